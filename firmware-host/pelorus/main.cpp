@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "firmware-host/pelorus/command.h"
+#include "firmware-host/pelorus/replay.h"
 
 namespace {
 
@@ -14,6 +15,7 @@ int run_tool(int argc, char** argv) {
   app.set_version_flag("--version", "pelorus " PELORUS_VERSION);
   app.require_subcommand(1);
   std::vector<pelorus::Verb> verbs;
+  verbs.push_back(pelorus::add_replay(app));
   CLI11_PARSE(app, argc, argv);
   for (const pelorus::Verb& verb : verbs) {
     if (!verb.parser->parsed()) continue;

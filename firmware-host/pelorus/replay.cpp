@@ -1,0 +1,76 @@
+#include "firmware-host/pelorus/replay.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "firmware-host/pelorus/replay_interrupt.h"
+#include "firmware-host/pelorus/replay_run.h"
+#include "firmware-host/pelorus/replay_source.h"
+#include "firmware-host/pelorus/result_files.h"
+
+namespace pelorus {
+namespace {
+
+struct ReplayArguments {
+  std::string dataset;
+  std::string out;
+  std::string calibration;
+  std::uint64_t frames = 0;
+  bool overlay = false;
+  int overlay_every = 1;
+  bool realtime = false;
+  bool stepped = false;
+  bool overwrite = false;
+};
+
+Result<int> run_verb(const ReplayArguments& arguments) {
+  // The source first: a mistyped data set must not leave an output folder behind.
+  Result<std::unique_ptr<StereoSource>> source = open_source(arguments.dataset, arguments.calibration);
+  if (!source) return source.error();
+  std::fprintf(stderr, "%s\n", source.value()->description().c_str());
+  if (Result<Ok> ready = prepare_output_folder(arguments.out, arguments.overwrite); !ready) return ready.error();
+
+  ReplayOptions options;
+  options.out_folder = arguments.out;
+  options.max_frames = arguments.frames;
+  options.realtime = arguments.realtime;
+  options.overlay_every = arguments.overlay ? arguments.overlay_every : 0;
+  options.stop = ReplayInterrupt::requested;
+  const ReplayInterrupt interrupt;
+  Result<ReplaySummary> summary = run_replay(*source.value(), options);
+  if (!summary) return summary.error();
+  std::printf("%sresults  %s\n", to_text(summary.value()).c_str(), arguments.out.c_str());
+  if (summary.value().failure) return *summary.value().failure;
+  if (summary.value().interrupted) {
+    std::fprintf(stderr, "pelorus: interrupted; the files hold every frame up to here\n");
+    return kInterruptedExitCode;
+  }
+  return 0;
+}
+
+}  // namespace
+
+Verb add_replay(CLI::App& app) {
+  auto arguments = std::make_shared<ReplayArguments>();
+  CLI::App* parser = app.add_subcommand("replay", "Recorded frames through the pipeline into result files");
+  parser->add_option("DATASET", arguments->dataset, "Data-set folder (EuRoC, KITTI), scene file or shipped scene name")
+      ->required();
+  parser->add_option("--out", arguments->out, "Output folder: camera.tum, objects.csv, frames.csv, timing.csv")
+      ->required();
+  parser->add_option("--calib", arguments->calibration, "Calibration file instead of the data set's own");
+  parser->add_option("--frames", arguments->frames, "Take the first N pairs only");
+  parser->add_flag("--overlay", arguments->overlay, "Write annotated pictures to OUT/overlay");
+  parser->add_option("--overlay-every", arguments->overlay_every, "Picture of every N-th frame")
+      ->check(CLI::PositiveNumber);
+  CLI::Option* realtime =
+      parser->add_flag("--realtime", arguments->realtime, "Feed at the recorded times; when late the newest pair wins");
+  parser->add_flag("--stepped", arguments->stepped, "Every pair, as fast as possible (default)")->excludes(realtime);
+  parser->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in OUT");
+  parser->footer(
+      "Exit codes: 0 done, 2 usage, 3 bad input, 4 calibration, 6 output, 130 interrupted.\n"
+      "On an error midway everything processed before it is kept.");
+  return {parser, [arguments] { return run_verb(*arguments); }};
+}
+
+}  // namespace pelorus

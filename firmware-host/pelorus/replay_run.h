@@ -1,0 +1,50 @@
+#pragma once
+// run_replay: recorded (or rendered) pairs -> rectification -> Pipeline::step -> files and pictures, in the calling
+// thread. The one loop behind `pelorus replay`, `ablate` and `demo`. Reads clocks only to measure and, in real-time
+// mode, to feed; stepped mode gives the same bytes every time. Thread-bound.
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "core/base/result.h"
+#include "core/model/stage_data.h"
+#include "core/pipeline/config.h"
+#include "drivers/stereo_source.h"
+
+namespace pelorus {
+
+struct ReplayOptions {
+  PipelineConfig pipeline;
+  std::filesystem::path out_folder;  // made by prepare_output_folder
+  std::uint64_t max_frames = 0;      // pairs taken from the source; 0 = all
+  bool realtime = false;             // feed at the recorded times; the newest pair wins, the others are counted
+  int overlay_every = 0;             // annotated picture of every n-th frame; 0 = none
+  std::function<bool()> stop;        // asked before each pair; may be empty
+  std::function<void(std::uint64_t done, std::uint64_t total)> progress;  // total 0 = unknown; may be empty
+};
+
+struct ReplaySummary {
+  std::uint64_t frames = 0;               // steps made
+  std::uint64_t missing = 0;              // gaps in seq: pairs the recording lacks
+  std::uint64_t dropped = 0;              // real-time mode: pairs skipped because the step was late
+  std::uint64_t without_pose = 0;         // frames that camera.tum lacks
+  std::array<std::uint64_t, 7> states{};  // frames per VisionState
+  int resets = 0;                         // reset_counter of the last frame
+  int objects_confirmed = 0;              // different ids that were ever confirmed
+  double median_step_ms = 0;
+  double p99_step_ms = 0;
+  bool interrupted = false;      // stop() said so
+  std::optional<Error> failure;  // why the run ended early; files hold everything before it
+};
+
+// An Error here means that nothing could be started (calibration, output); later failures are in the summary.
+[[nodiscard]] Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& options);
+
+// The lines that end a run, for people.
+[[nodiscard]] std::string to_text(const ReplaySummary& summary);
+
+}  // namespace pelorus

@@ -1,0 +1,74 @@
+#pragma once
+// ResultWriter: what a run leaves on disk (interfaces: camera.tum, objects.csv, frames.csv) for `pelorus eval`.
+// The three files hold nothing that depends on the machine's speed, so that the same input gives the same bytes;
+// wall times go to timing.csv. Every frame is handed to the kernel before append() returns: an error or a signal
+// later loses nothing already written. Frames and units: the column names; transforms as in FrameResult.
+// Thread-bound. One per output folder.
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "core/base/result.h"
+#include "core/model/stage_data.h"
+
+namespace pelorus {
+
+// Wall times of one frame around the step [us].
+struct FrameTiming {
+  std::int64_t read_us = 0;     // decoding from the source
+  std::int64_t rectify_us = 0;  // 0 when the images came rectified
+  std::int64_t step_us = 0;     // Pipeline::step
+};
+
+struct ResultPaths {
+  explicit ResultPaths(const std::filesystem::path& folder)
+      : camera(folder / "camera.tum"),
+        objects(folder / "objects.csv"),
+        frames(folder / "frames.csv"),
+        timing(folder / "timing.csv"),
+        overlay(folder / "overlay") {}
+  std::filesystem::path camera;
+  std::filesystem::path objects;
+  std::filesystem::path frames;
+  std::filesystem::path timing;
+  std::filesystem::path overlay;
+};
+
+// Makes the folder ready: created when absent; refused when it is a file, cannot be written, or holds anything
+// already, unless `overwrite`, which removes the files of an earlier run and nothing else.
+[[nodiscard]] Result<Ok> prepare_output_folder(const std::filesystem::path& folder, bool overwrite);
+
+class ResultWriter {
+ public:
+  // The folder must exist (prepare_output_folder); files are created with their header lines.
+  [[nodiscard]] static Result<ResultWriter> create(const std::filesystem::path& folder);
+  [[nodiscard]] Result<Ok> append(const FrameResult& result, const FrameTiming& timing);
+
+ private:
+  struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  struct OutputFile {
+    std::unique_ptr<std::FILE, CloseFile> file;
+    std::filesystem::path path;
+  };
+  ResultWriter() = default;
+  [[nodiscard]] static Result<OutputFile> open(const std::filesystem::path& path, const std::string& header);
+  [[nodiscard]] static Result<Ok> flush(const OutputFile& output);
+  void write_frame(const FrameResult& result);
+  void write_timing(const FrameResult& result, const FrameTiming& timing);
+
+  OutputFile camera_;
+  OutputFile objects_;
+  OutputFile frames_;
+  OutputFile timing_;
+};
+
+// Covariance of the step motion with the left perturbation taken at the body's centroid instead of the world's
+// origin (axes stay those of `world`): a lever arm of kilometres would otherwise turn rotation noise into metres.
+[[nodiscard]] Matrix6d motion_covariance_at_centroid(const ObjectState& object);
+
+}  // namespace pelorus
