@@ -1,0 +1,207 @@
+#include "core/kernels/patch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "core/kernels/cubic_spline.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/kernels/patch.cpp"
+#include "hwy/foreach_target.h"
+#include "hwy/highway.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace pelorus::HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Columns = hn::CappedTag<float, kPatchStride>;
+using Vec = hn::VFromD<Columns>;
+using Taps = std::array<float, 4>;
+
+// No fused multiply-add anywhere: the same bits on every target (see the build's -ffp-contract=off).
+HWY_INLINE Vec add_product(Vec sum, Vec a, Vec b) { return hn::Add(sum, hn::Mul(a, b)); }
+
+struct TapVectors {
+  Vec w0, w1, w2, w3;
+};
+
+HWY_INLINE TapVectors broadcast(const Taps& w) {
+  const Columns d;
+  return {hn::Set(d, w[0]), hn::Set(d, w[1]), hn::Set(d, w[2]), hn::Set(d, w[3])};
+}
+
+HWY_INLINE Vec dot(const TapVectors& w, Vec a, Vec b, Vec c, Vec e) {
+  return hn::Add(hn::Add(hn::Mul(w.w0, a), hn::Mul(w.w1, b)), hn::Add(hn::Mul(w.w2, c), hn::Mul(w.w3, e)));
+}
+
+HWY_INLINE Vec load_pixels(const std::uint8_t* p) {
+  const Columns d;
+  const hn::Rebind<std::int32_t, Columns> di;
+  const hn::Rebind<std::uint8_t, Columns> d8;
+  return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, p)));
+}
+
+// Vector sums of one patch, each in its own row of column sums; collected in a fixed order.
+template <std::size_t kSums>
+struct ColumnSums {
+  alignas(64) float columns[kSums][kPatchStride];
+
+  HWY_INLINE void put(std::size_t sum, std::size_t first_column, Vec v) {
+    hn::StoreU(v, Columns(), columns[sum] + first_column);
+  }
+  float collect(std::size_t sum) {
+    float* c = columns[sum];
+    for (std::size_t half = kPatchStride / 2; half > 0; half /= 2) {
+      for (std::size_t i = 0; i < half; ++i) c[i] += c[i + half];
+    }
+    return c[0];
+  }
+};
+
+void sample_patch(const ImageView& image, float u, float v, PatchTemplate& patch) {
+  const Columns d;
+  const float floor_u = std::floor(u);
+  const float floor_v = std::floor(v);
+  const TapVectors wu = broadcast(cubic_spline(u - floor_u));
+  const TapVectors du = broadcast(cubic_spline_derivative(u - floor_u));
+  const TapVectors wv = broadcast(cubic_spline(v - floor_v));
+  const TapVectors dv = broadcast(cubic_spline_derivative(v - floor_v));
+  for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
+    const std::uint8_t* p = image.row(static_cast<int>(floor_v) - 1) + static_cast<int>(floor_u) - 1 + c;
+    Vec s0 = hn::Zero(d), s1 = s0, s2 = s0;  // rows filtered along u
+    Vec g0 = s0, g1 = s0, g2 = s0;           // rows differentiated along u
+    for (int r = -3; r < patch.size; ++r, p += image.stride) {
+      const Vec a = load_pixels(p), b = load_pixels(p + 1), e = load_pixels(p + 2), f = load_pixels(p + 3);
+      const Vec s3 = dot(wu, a, b, e, f);
+      const Vec g3 = dot(du, a, b, e, f);
+      if (r >= 0) {
+        const std::size_t i = static_cast<std::size_t>(r) * kPatchStride + c;
+        hn::StoreU(dot(wv, s0, s1, s2, s3), d, patch.value.data() + i);
+        hn::StoreU(dot(wv, g0, g1, g2, g3), d, patch.gradient_u.data() + i);
+        hn::StoreU(dot(dv, s0, s1, s2, s3), d, patch.gradient_v.data() + i);
+      }
+      s0 = s1, s1 = s2, s2 = s3;
+      g0 = g1, g1 = g2, g2 = g3;
+    }
+  }
+}
+
+void normalise(PatchTemplate& patch) {
+  const Columns d;
+  const std::size_t end = static_cast<std::size_t>(patch.size) * kPatchStride;
+  float* f = patch.value.data();
+  float* gu = patch.gradient_u.data();
+  float* gv = patch.gradient_v.data();
+  const float* w = patch.weight.data();
+  ColumnSums<4> sums;
+  for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
+    Vec count = hn::Zero(d), value = count, mean_u = count, mean_v = count;
+    for (std::size_t i = c; i < end; i += kPatchStride) {
+      const Vec weight = hn::LoadU(d, w + i);
+      count = hn::Add(count, weight);
+      value = add_product(value, weight, hn::LoadU(d, f + i));
+      mean_u = add_product(mean_u, weight, hn::LoadU(d, gu + i));
+      mean_v = add_product(mean_v, weight, hn::LoadU(d, gv + i));
+    }
+    sums.put(0, c, count), sums.put(1, c, value), sums.put(2, c, mean_u), sums.put(3, c, mean_v);
+  }
+  patch.count = sums.collect(0);
+  const float per_pixel = 1.0F / std::max(patch.count, 1.0F);
+  patch.mean = sums.collect(1) * per_pixel;
+  const Vec mean = hn::Set(d, patch.mean);
+  const Vec mean_u = hn::Set(d, sums.collect(2) * per_pixel);
+  const Vec mean_v = hn::Set(d, sums.collect(3) * per_pixel);
+  for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
+    Vec energy = hn::Zero(d), along_u = energy, along_v = energy;
+    for (std::size_t i = c; i < end; i += kPatchStride) {
+      const Vec weight = hn::LoadU(d, w + i);
+      const Vec value = hn::Mul(weight, hn::Sub(hn::LoadU(d, f + i), mean));
+      const Vec u = hn::Mul(weight, hn::Sub(hn::LoadU(d, gu + i), mean_u));
+      const Vec v = hn::Mul(weight, hn::Sub(hn::LoadU(d, gv + i), mean_v));
+      hn::StoreU(value, d, f + i), hn::StoreU(u, d, gu + i), hn::StoreU(v, d, gv + i);
+      energy = add_product(energy, value, value);
+      along_u = add_product(along_u, value, u);
+      along_v = add_product(along_v, value, v);
+    }
+    sums.put(0, c, energy), sums.put(1, c, along_u), sums.put(2, c, along_v);
+  }
+  patch.energy = sums.collect(0);
+  const float scale = 1.0F / std::max(patch.energy, 1e-6F);
+  const Vec along_u = hn::Set(d, sums.collect(1) * scale);
+  const Vec along_v = hn::Set(d, sums.collect(2) * scale);
+  for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
+    Vec uu = hn::Zero(d), uv = uu, vv = uu;
+    for (std::size_t i = c; i < end; i += kPatchStride) {
+      const Vec value = hn::LoadU(d, f + i);
+      const Vec u = hn::Sub(hn::LoadU(d, gu + i), hn::Mul(along_u, value));
+      const Vec v = hn::Sub(hn::LoadU(d, gv + i), hn::Mul(along_v, value));
+      hn::StoreU(u, d, gu + i), hn::StoreU(v, d, gv + i);
+      uu = add_product(uu, u, u), uv = add_product(uv, u, v), vv = add_product(vv, v, v);
+    }
+    sums.put(0, c, uu), sums.put(1, c, uv), sums.put(2, c, vv);
+  }
+  patch.structure_uu = sums.collect(0);
+  patch.structure_uv = sums.collect(1);
+  patch.structure_vv = sums.collect(2);
+}
+
+PatchSums compare_patch(const ImageView& image, float u, float v, const PatchTemplate& patch) {
+  const Columns d;
+  const float floor_u = std::floor(u);
+  const float floor_v = std::floor(v);
+  const TapVectors wu = broadcast(cubic_spline(u - floor_u));
+  const TapVectors wv = broadcast(cubic_spline(v - floor_v));
+  const Vec mean = hn::Set(d, patch.mean);
+  ColumnSums<5> sums;
+  for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
+    const std::uint8_t* p = image.row(static_cast<int>(floor_v) - 1) + static_cast<int>(floor_u) - 1 + c;
+    Vec s0 = hn::Zero(d), s1 = s0, s2 = s0;
+    Vec gradient_u = s0, gradient_v = s0, value = s0, sum = s0, square = s0;
+    for (int r = -3; r < patch.size; ++r, p += image.stride) {
+      const Vec s3 = dot(wu, load_pixels(p), load_pixels(p + 1), load_pixels(p + 2), load_pixels(p + 3));
+      if (r >= 0) {
+        const std::size_t i = static_cast<std::size_t>(r) * kPatchStride + c;
+        const Vec weight = hn::LoadU(d, patch.weight.data() + i);
+        const Vec relative = hn::Mul(weight, hn::Sub(dot(wv, s0, s1, s2, s3), mean));
+        gradient_u = add_product(gradient_u, hn::LoadU(d, patch.gradient_u.data() + i), relative);
+        gradient_v = add_product(gradient_v, hn::LoadU(d, patch.gradient_v.data() + i), relative);
+        value = add_product(value, hn::LoadU(d, patch.value.data() + i), relative);
+        sum = hn::Add(sum, relative);
+        square = add_product(square, relative, relative);
+      }
+      s0 = s1, s1 = s2, s2 = s3;
+    }
+    sums.put(0, c, gradient_u), sums.put(1, c, gradient_v), sums.put(2, c, value), sums.put(3, c, sum);
+    sums.put(4, c, square);
+  }
+  return {sums.collect(0), sums.collect(1), sums.collect(2), sums.collect(3), sums.collect(4)};
+}
+
+}  // namespace pelorus::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace pelorus {
+
+HWY_EXPORT(sample_patch);
+HWY_EXPORT(normalise);
+HWY_EXPORT(compare_patch);
+
+void sample_patch(const ImageView& image, float u, float v, PatchTemplate& patch) {
+  HWY_DYNAMIC_DISPATCH(sample_patch)(image, u, v, patch);
+}
+
+void sample_warped_patch(const ImageView& image, float u, float v, const std::array<float, 4>& A,
+                         PatchTemplate& patch) {
+  reference::sample_warped_patch(image, u, v, A, patch);
+}
+
+void normalise(PatchTemplate& patch) { HWY_DYNAMIC_DISPATCH(normalise)(patch); }
+
+PatchSums compare_patch(const ImageView& image, float u, float v, const PatchTemplate& patch) {
+  return HWY_DYNAMIC_DISPATCH(compare_patch)(image, u, v, patch);
+}
+
+}  // namespace pelorus
+#endif

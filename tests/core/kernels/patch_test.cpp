@@ -1,0 +1,145 @@
+#include "core/kernels/patch.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/kernels/image_pyramid.h"
+#include "tests/core/frontend/analytic_texture.h"
+#include "tests/core/kernels/each_target.h"
+
+namespace pelorus {
+namespace {
+
+ImagePyramid smooth_pyramid() {
+  const test::AnalyticTexture texture(3);
+  const Image image = test::render(texture, 120, 90, 1.0, 5, [](double u, double v) {
+    return test::TexturePlace{u, v};
+  });
+  ImagePyramid pyramid;
+  pyramid.build(image.view(), 1);
+  return pyramid;
+}
+
+PatchTemplate empty_patch(int size) {
+  PatchTemplate patch;
+  patch.size = size;
+  patch.value.fill(0), patch.gradient_u.fill(0), patch.gradient_v.fill(0), patch.weight.fill(0);
+  for (int r = 0; r < size; ++r) {
+    for (int c = 0; c < size; ++c) patch.weight[static_cast<std::size_t>(r * kPatchStride + c)] = 1;
+  }
+  return patch;
+}
+
+void expect_equal_bits(const PatchTemplate& a, const PatchTemplate& b) {
+  const auto used = static_cast<std::ptrdiff_t>(a.size * kPatchStride);
+  EXPECT_TRUE(std::equal(a.value.begin(), a.value.begin() + used, b.value.begin()));
+  EXPECT_TRUE(std::equal(a.gradient_u.begin(), a.gradient_u.begin() + used, b.gradient_u.begin()));
+  EXPECT_TRUE(std::equal(a.gradient_v.begin(), a.gradient_v.begin() + used, b.gradient_v.begin()));
+  EXPECT_TRUE(std::equal(a.weight.begin(), a.weight.begin() + used, b.weight.begin()));
+  EXPECT_EQ(a.mean, b.mean);
+  EXPECT_EQ(a.count, b.count);
+  EXPECT_EQ(a.energy, b.energy);
+  EXPECT_EQ(a.structure_uu, b.structure_uu);
+  EXPECT_EQ(a.structure_uv, b.structure_uv);
+  EXPECT_EQ(a.structure_vv, b.structure_vv);
+}
+
+TEST(Patch, VectorPathsEqualTheReferenceBitByBit) {
+  const ImagePyramid pyramid = smooth_pyramid();
+  for_each_target([&] {
+    std::mt19937 rng(11);
+    std::uniform_real_distribution<float> at(-8.0F, 75.0F);
+    for (int i = 0; i < 200; ++i) {
+      const int size = 5 + 2 * (i % 6);
+      const float u = at(rng);
+      const float v = at(rng);
+      PatchTemplate patch = empty_patch(size);
+      PatchTemplate expected = patch;
+      sample_patch(pyramid.level(0), u, v, patch);
+      reference::sample_patch(pyramid.level(0), u, v, expected);
+      expect_equal_bits(patch, expected);
+      normalise(patch);
+      reference::normalise(expected);
+      expect_equal_bits(patch, expected);
+      const PatchSums sums = compare_patch(pyramid.level(0), v, u, patch);
+      const PatchSums expected_sums = reference::compare_patch(pyramid.level(0), v, u, patch);
+      EXPECT_EQ(sums.gradient_u, expected_sums.gradient_u);
+      EXPECT_EQ(sums.gradient_v, expected_sums.gradient_v);
+      EXPECT_EQ(sums.value, expected_sums.value);
+      EXPECT_EQ(sums.sum, expected_sums.sum);
+      EXPECT_EQ(sums.square, expected_sums.square);
+    }
+  });
+}
+
+TEST(Patch, WarpedVectorPathsEqualTheReferenceBitByBit) {
+  const ImagePyramid pyramid = smooth_pyramid();
+  for_each_target([&] {
+    std::mt19937 rng(12);
+    std::uniform_real_distribution<float> at(2.0F, 85.0F);
+    std::uniform_real_distribution<float> skew(-0.4F, 0.4F);
+    for (int i = 0; i < 100; ++i) {
+      const std::array<float, 4> A{1 + skew(rng), skew(rng), skew(rng), 1 + skew(rng)};
+      const float u = at(rng);
+      const float v = at(rng);
+      PatchTemplate patch = empty_patch(15);
+      PatchTemplate expected = patch;
+      sample_warped_patch(pyramid.level(0), u, v, A, patch);
+      reference::sample_warped_patch(pyramid.level(0), u, v, A, expected);
+      expect_equal_bits(patch, expected);
+    }
+  });
+}
+
+TEST(Patch, TheIdentityWarpSamplesThePlainPatch) {
+  const ImagePyramid pyramid = smooth_pyramid();
+  PatchTemplate plain = empty_patch(15);
+  PatchTemplate warped = plain;
+  sample_patch(pyramid.level(0), 40.25F - 7, 33.5F - 7, plain);
+  sample_warped_patch(pyramid.level(0), 40.25F, 33.5F, {1, 0, 0, 1}, warped);
+  for (std::size_t i = 0; i < kPatchFloats; ++i) {
+    if (plain.weight[i] == 0) continue;
+    EXPECT_NEAR(plain.value[i], warped.value[i], 1e-3F);
+    EXPECT_NEAR(plain.gradient_u[i], warped.gradient_u[i], 1e-3F);
+    EXPECT_NEAR(plain.gradient_v[i], warped.gradient_v[i], 1e-3F);
+  }
+}
+
+TEST(Patch, GradientsAreTheSlopeOfTheSampledValue) {
+  const ImagePyramid pyramid = smooth_pyramid();
+  constexpr float kStep = 0.01F;
+  PatchTemplate at = empty_patch(15);
+  PatchTemplate right = at;
+  PatchTemplate below = at;
+  sample_patch(pyramid.level(0), 20.3F, 30.6F, at);
+  sample_patch(pyramid.level(0), 20.3F + kStep, 30.6F, right);
+  sample_patch(pyramid.level(0), 20.3F, 30.6F + kStep, below);
+  for (std::size_t i = 0; i < kPatchFloats; ++i) {
+    EXPECT_NEAR((right.value[i] - at.value[i]) / kStep, at.gradient_u[i], 0.15F);
+    EXPECT_NEAR((below.value[i] - at.value[i]) / kStep, at.gradient_v[i], 0.15F);
+  }
+}
+
+TEST(Patch, ComparisonIsBlindToOffsetAndGainOfTheLight) {
+  const test::AnalyticTexture texture(3);
+  const auto place = [](double u, double v) { return test::TexturePlace{u, v}; };
+  const Image plain = test::render(texture, 64, 64, 0.0, 1, place);
+  const Image dimmed =
+      test::render(texture, 64, 64, 0.0, 1, place, [](double grey, int, int) { return 0.5 * grey + 40; });
+  ImagePyramid a;
+  ImagePyramid b;
+  a.build(plain.view(), 1);
+  b.build(dimmed.view(), 1);
+  PatchTemplate patch = empty_patch(15);
+  sample_patch(a.level(0), 20.0F, 20.0F, patch);
+  normalise(patch);
+  const PatchSums same = compare_patch(b.level(0), 20.0F, 20.0F, patch);
+  const PatchSums shifted = compare_patch(b.level(0), 21.0F, 20.0F, patch);
+  EXPECT_LT(std::abs(same.gradient_u), 0.03F * std::abs(shifted.gradient_u));
+  EXPECT_NEAR(same.value / patch.energy, 0.5F, 0.01F);
+}
+
+}  // namespace
+}  // namespace pelorus
