@@ -1,0 +1,136 @@
+#include "drivers/replay/recording.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+
+namespace pelorus {
+namespace {
+
+constexpr std::int64_t kMaxSkew_ns = 5'000'000;  // a vehicle at 1 m/s moves 5 mm: the pair is still one scene
+
+std::int64_t median_interval_ns(const std::vector<RecordedImage>& images) {
+  std::vector<std::int64_t> intervals;
+  for (std::size_t i = 1; i < images.size(); ++i) intervals.push_back(images[i].time.ns - images[i - 1].time.ns);
+  if (intervals.empty()) return 0;
+  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  return *middle;
+}
+
+// Nominal periods between two events, at least one: clocks jitter, images do not coincide.
+std::uint64_t periods_between(Timestamp earlier, Timestamp later, std::int64_t period_ns) {
+  if (period_ns <= 0) return 1;
+  const double periods = static_cast<double>(later.ns - earlier.ns) / static_cast<double>(period_ns);
+  return static_cast<std::uint64_t>(std::max(1.0, std::round(periods)));
+}
+
+// Walks both lists in time order; each step is a pair or a single image, which advances seq but is lost.
+class Pairer {
+ public:
+  Pairer(const Recording& recording, Pairing& out) : recording_(recording), out_(out) {
+    tolerance_ns_ = std::min(out.period_ns / 4, kMaxSkew_ns);
+  }
+
+  void run() {
+    std::size_t l = 0;
+    std::size_t r = 0;
+    while (l < recording_.left.size() || r < recording_.right.size()) {
+      if (r == recording_.right.size()) {
+        single(recording_.left[l++].time, out_.lost_right);
+      } else if (l == recording_.left.size()) {
+        single(recording_.right[r++].time, out_.lost_left);
+      } else {
+        const RecordedImage& left = recording_.left[l];
+        const RecordedImage& right = recording_.right[r];
+        if (std::abs(left.time.ns - right.time.ns) <= tolerance_ns_) {
+          pair(left, right);
+          ++l;
+          ++r;
+        } else if (left.time < right.time) {
+          single(left.time, out_.lost_right);
+          ++l;
+        } else {
+          single(right.time, out_.lost_left);
+          ++r;
+        }
+      }
+    }
+  }
+
+ private:
+  void advance(Timestamp time) {
+    if (any_) {
+      const std::uint64_t step = periods_between(last_, time, out_.period_ns);
+      seq_ += step;
+      out_.lost_both += static_cast<std::size_t>(step - 1);
+    }
+    any_ = true;
+    last_ = time;
+  }
+
+  void single(Timestamp time, std::size_t& lost) {
+    advance(time);
+    ++lost;
+  }
+
+  void pair(const RecordedImage& left, const RecordedImage& right) {
+    advance(left.time);
+    if (!out_.pairs.empty()) {
+      const auto gap = static_cast<std::size_t>(seq_ - out_.pairs.back().seq - 1);
+      if (gap > out_.longest_gap) {
+        out_.longest_gap = gap;
+        out_.longest_gap_after = out_.pairs.back().time;
+      }
+    }
+    out_.pairs.push_back({seq_, left.time, left.file, right.file});
+  }
+
+  const Recording& recording_;
+  Pairing& out_;
+  std::int64_t tolerance_ns_ = 0;
+  std::uint64_t seq_ = 0;
+  Timestamp last_;
+  bool any_ = false;
+};
+
+}  // namespace
+
+Result<Pairing> pair_images(const Recording& recording) {
+  Pairing out;
+  // The camera with more images knows the period better.
+  out.period_ns =
+      median_interval_ns(recording.left.size() >= recording.right.size() ? recording.left : recording.right);
+  Pairer(recording, out).run();
+  if (!out.pairs.empty()) return out;
+  return Error{ErrorCode::bad_input, recording.folder.string(),
+               "no left image (" + std::to_string(recording.left.size()) + ") has a right one (" +
+                   std::to_string(recording.right.size()) + ") of its time",
+               "the cameras' time stamps must agree to 5 ms and a quarter of the frame period"};
+}
+
+Result<> check_order(const std::vector<RecordedImage>& images, const std::function<std::string(std::size_t)>& place) {
+  for (std::size_t i = 1; i < images.size(); ++i) {
+    if (images[i - 1].time < images[i].time) continue;
+    const bool duplicate = images[i - 1].time == images[i].time;
+    return Error{ErrorCode::bad_input, place(i),
+                 "time stamp " + std::to_string(images[i].time.ns) + " ns " +
+                     (duplicate ? "appears twice" : "is earlier than the one before it"),
+                 duplicate ? "remove one of the two lines" : "sort the images by time"};
+  }
+  return Ok{};
+}
+
+Result<> drop_absent(std::vector<RecordedImage>& images, const std::filesystem::path& folder) {
+  const std::size_t listed = images.size();
+  std::erase_if(images, [](const RecordedImage& image) {
+    std::error_code ignored;
+    return !std::filesystem::is_regular_file(image.file, ignored);
+  });
+  if (!images.empty()) return Ok{};
+  return Error{ErrorCode::bad_input, folder.string(),
+               listed == 0 ? "holds no images" : "none of the " + std::to_string(listed) + " listed images is there",
+               "copy the images of this camera, or pass the folder that holds them"};
+}
+
+}  // namespace pelorus

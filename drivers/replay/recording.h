@@ -1,0 +1,61 @@
+#pragma once
+// What a folder of recorded frames holds, whatever its layout: per camera a list of images with time stamps; and how
+// the two lists become pairs. Pure.
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "core/base/time.h"
+#include "core/geometry/stereo_calibration.h"
+
+namespace pelorus {
+
+struct RecordedImage {
+  std::int64_t index = 0;  // running number within the recording
+  Timestamp time;
+  std::filesystem::path file;
+};
+
+struct Recording {
+  std::string format;
+  std::filesystem::path folder;
+  std::vector<RecordedImage> left;  // strictly increasing in time
+  std::vector<RecordedImage> right;
+  std::vector<std::string> remarks;  // what a user must know about the listing
+  // Deferred, because a user's calibration may replace it.
+  std::function<Result<LoadedCalibration>()> read_calibration;
+};
+
+struct RecordedPair {
+  std::uint64_t seq = 0;
+  Timestamp time;  // of the left image
+  std::filesystem::path left;
+  std::filesystem::path right;
+};
+
+struct Pairing {
+  std::vector<RecordedPair> pairs;
+  std::int64_t period_ns = 0;   // nominal: median of the intervals; 0 for a single image
+  std::size_t lost_left = 0;    // pairs lost because the left image is missing
+  std::size_t lost_right = 0;   // ... the right one
+  std::size_t lost_both = 0;    // ... or both, seen as a step in time
+  std::size_t longest_gap = 0;  // pairs lost in a row
+  Timestamp longest_gap_after;  // time stamp of the pair before that gap
+};
+
+// Images of the two cameras belong together when their times differ by less than a quarter of the period (and
+// 5 ms). seq counts nominal periods, so that every lost pair is a gap in it. An Error when nothing pairs up.
+[[nodiscard]] Result<Pairing> pair_images(const Recording& recording);
+
+// Refuses unsorted and duplicate times. `place(i)` names the file and line of image i.
+[[nodiscard]] Result<> check_order(const std::vector<RecordedImage>& images,
+                                   const std::function<std::string(std::size_t)>& place);
+
+// Drops images whose file is not there (each is a lost pair). An Error when none is left.
+[[nodiscard]] Result<> drop_absent(std::vector<RecordedImage>& images, const std::filesystem::path& folder);
+
+}  // namespace pelorus

@@ -1,0 +1,277 @@
+#include "drivers/replay/dataset.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/drivers/replay/recording_fixture.h"
+
+namespace pelorus {
+namespace {
+
+namespace fs = std::filesystem;
+
+using Dataset = RecordingFixture;
+
+std::unique_ptr<StereoSource> open(const fs::path& path) {
+  auto source = open_dataset(path);
+  EXPECT_TRUE(source.ok()) << (source.ok() ? "" : source.error().message());
+  return source.ok() ? std::move(source.value()) : nullptr;
+}
+
+// An error must say where, what and the cure.
+void expect_error(const fs::path& path, const std::string& place, const std::string& detail) {
+  const auto source = open_dataset(path);
+  ASSERT_FALSE(source.ok()) << "no error where " << detail << " was expected";
+  const Error& e = source.error();
+  EXPECT_NE(e.place.find(place), std::string::npos) << e.message();
+  EXPECT_NE(e.detail.find(detail), std::string::npos) << e.message();
+  EXPECT_FALSE(e.cure.empty()) << e.message();
+}
+
+std::vector<std::uint64_t> all_seqs(StereoSource& source) {
+  std::vector<std::uint64_t> seqs;
+  SourcePair pair;
+  while (true) {
+    const auto more = source.next(pair);
+    EXPECT_TRUE(more.ok()) << (more.ok() ? "" : more.error().message());
+    if (!more.ok() || !more.value()) return seqs;
+    seqs.push_back(pair.seq);
+  }
+}
+
+TEST_F(Dataset, ReadsEurocInOrderWithNanoseconds) {
+  const fs::path root = euroc();
+  for (const fs::path& path : {root, root / "mav0"}) {
+    const auto source = open(path);
+    ASSERT_NE(source, nullptr);
+    EXPECT_EQ(source->pair_count(), 8u);
+    SourcePair pair;
+    for (int i = 0; i < kPairs; ++i) {
+      ASSERT_TRUE(source->next(pair).value());
+      EXPECT_EQ(pair.seq, static_cast<std::uint64_t>(i));
+      EXPECT_EQ(pair.capture_time.ns, time_ns(i));
+      EXPECT_EQ(pair.left.row(0)[0], 20 * i);
+      EXPECT_EQ(pair.right.row(0)[0], 20 * i + 1);
+      EXPECT_EQ(pair.left.width(), kWidth);
+    }
+    EXPECT_FALSE(source->next(pair).value());
+    EXPECT_NEAR(source->calibration().T_right_left.translation().x(), -0.11, 1e-9);
+    EXPECT_EQ(source->calibration().left.lens, LensKind::radtan);
+    EXPECT_FALSE(source->calibration().rectified);
+  }
+}
+
+TEST_F(Dataset, ReadsEurocWithoutListFromTheNames) {
+  const fs::path root = euroc();
+  fs::remove(root / "mav0/cam0/data.csv");
+  fs::remove(root / "mav0/cam1/data.csv");
+  SourcePair pair;
+  const auto source = open(root);
+  ASSERT_NE(source, nullptr);
+  EXPECT_EQ(source->pair_count(), 8u);
+  ASSERT_TRUE(source->next(pair).value());
+  EXPECT_EQ(pair.capture_time.ns, time_ns(0));
+}
+
+TEST_F(Dataset, ReadsKittiOdometry) {
+  const auto source = open(kitti_odometry());
+  ASSERT_NE(source, nullptr);
+  SourcePair pair;
+  ASSERT_TRUE(source->next(pair).value());
+  ASSERT_TRUE(source->next(pair).value());
+  EXPECT_EQ(pair.capture_time.ns, 100'000'000);
+  EXPECT_EQ(pair.right.row(0)[0], 21);
+  EXPECT_TRUE(source->calibration().rectified);
+  EXPECT_NEAR(source->calibration().T_right_left.translation().x(), -0.5, 1e-12);
+  EXPECT_EQ(source->calibration().left.width, kWidth);  // calib.txt has no size: the images give it
+}
+
+TEST_F(Dataset, ReadsKittiRawWithTheCalibrationOfTheDay) {
+  const auto source = open(kitti_raw());
+  ASSERT_NE(source, nullptr);
+  SourcePair pair;
+  ASSERT_TRUE(source->next(pair).value());
+  EXPECT_EQ(pair.capture_time.ns, 1'317'042'272'351'950'336);
+  EXPECT_NEAR(source->calibration().T_right_left.translation().x(), -0.5, 1e-12);
+  EXPECT_EQ(all_seqs(*source).back(), 7u);
+}
+
+TEST_F(Dataset, AMissingImageOnEitherSideIsAGapInSeq) {
+  const fs::path root = euroc();
+  fs::remove(root / "mav0/cam1/data" / png(3));
+  fs::remove(root / "mav0/cam0/data" / png(5));
+  const auto source = open(root);
+  ASSERT_NE(source, nullptr);
+  EXPECT_EQ(source->pair_count(), 6u);
+  EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{0, 1, 2, 4, 6, 7}));
+  EXPECT_NE(source->description().find("lost: 2 pairs (1 without left image, 1 without right image"), std::string::npos)
+      << source->description();
+}
+
+TEST_F(Dataset, ALineMissingInBothListsIsAGapInSeqToo) {
+  const fs::path root = euroc();
+  for (const char* camera : {"mav0/cam0", "mav0/cam1"}) {
+    std::string csv;
+    for (int i = 0; i < kPairs; ++i)
+      if (i != 2 && i != 3) csv += std::to_string(time_ns(i)) + "," + png(i) + "\n";
+    write(root / camera / "data.csv", csv);
+  }
+  const auto source = open(root);
+  ASSERT_NE(source, nullptr);
+  EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{0, 1, 4, 5, 6, 7}));
+  EXPECT_NE(source->description().find("2 never recorded"), std::string::npos) << source->description();
+}
+
+TEST_F(Dataset, AMissingKittiImageIsAGapInSeq) {
+  const fs::path root = kitti_odometry();
+  fs::remove(root / "image_1/000004.png");
+  const auto source = open(root);
+  ASSERT_NE(source, nullptr);
+  EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{0, 1, 2, 3, 5, 6, 7}));
+}
+
+TEST_F(Dataset, ALongGapIsReported) {
+  const fs::path root = euroc();
+  for (int i = 2; i < 6; ++i) fs::remove(root / "mav0/cam1/data" / png(i));
+  const auto source = open(root);
+  ASSERT_NE(source, nullptr);
+  EXPECT_NE(source->description().find("warning: 4 pairs in a row are lost after " + std::to_string(time_ns(1))),
+            std::string::npos)
+      << source->description();
+}
+
+TEST_F(Dataset, ATruncatedImageIsAnErrorWithFileAndFrameAndReadingGoesOn) {
+  const fs::path root = euroc();
+  const fs::path broken = root / "mav0/cam1/data" / png(2);
+  fs::resize_file(broken, fs::file_size(broken) / 2);
+  const auto source = open(root);
+  ASSERT_NE(source, nullptr);
+  SourcePair pair;
+  ASSERT_TRUE(source->next(pair).value());
+  ASSERT_TRUE(source->next(pair).value());
+  const auto failed = source->next(pair);
+  ASSERT_FALSE(failed.ok());
+  EXPECT_EQ(failed.error().place, broken.string());
+  EXPECT_NE(failed.error().detail.find("truncated"), std::string::npos) << failed.error().message();
+  EXPECT_NE(failed.error().detail.find("frame 2"), std::string::npos) << failed.error().message();
+  EXPECT_EQ(exit_code(failed.error().code), 3);
+  EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{3, 4, 5, 6, 7}));
+}
+
+TEST_F(Dataset, AFileThatIsNoImageAndAnEmptyOneAreErrors) {
+  const fs::path root = euroc();
+  write(root / "mav0/cam0/data" / png(0), "this is no picture");
+  expect_error(root, png(0), "cannot be decoded");
+  write(root / "mav0/cam0/data" / png(0), "");
+  expect_error(root, png(0), "empty");
+}
+
+TEST_F(Dataset, ADamagedImageBodyIsAnError) {
+  const fs::path root = euroc();
+  const fs::path broken = root / "mav0/cam0/data" / png(1);
+  std::string bytes(fs::file_size(broken), '\0');
+  std::ifstream(broken, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  for (std::size_t i = 60; i < 90; ++i) bytes[i] = static_cast<char>(bytes[i] ^ 0x5a);
+  write(broken, bytes);
+  const auto source = open(root);
+  ASSERT_NE(source, nullptr);
+  SourcePair pair;
+  ASSERT_TRUE(source->next(pair).value());
+  EXPECT_FALSE(source->next(pair).ok());
+}
+
+TEST_F(Dataset, SizesThatDifferFromTheOtherCameraOrTheCalibrationAreErrors) {
+  const fs::path root = euroc();
+  write_image(root / "mav0/cam1/data" / png(0), 5, 32, 48);
+  expect_error(root, "cam1", "is 32x48, the left image 64x48");
+  write_image(root / "mav0/cam0/data" / png(0), 5, 32, 48);
+  expect_error(root, "cam0", "is 32x48, the calibration is for 64x48");
+}
+
+TEST_F(Dataset, DuplicateAndUnsortedTimesNameTheirLine) {
+  const fs::path root = euroc();
+  const fs::path csv = root / "mav0/cam0/data.csv";
+  write(csv, "#h\n" + std::to_string(time_ns(0)) + ",a.png\n" + std::to_string(time_ns(0)) + ",b.png\n");
+  expect_error(root, "cam0/data.csv:3", "appears twice");
+  write(csv, "#h\n" + std::to_string(time_ns(1)) + ",a.png\n" + std::to_string(time_ns(0)) + ",b.png\n");
+  expect_error(root, "cam0/data.csv:3", "earlier than the one before");
+  write(csv, "#h\nyesterday,a.png\n");
+  expect_error(root, "cam0/data.csv:2", "does not start with a time stamp");
+  const fs::path odometry = kitti_odometry();
+  write(odometry / "times.txt", "0\n0.1\n0.2\n0.15\n0.4\n0.5\n0.6\n0.7\n");
+  expect_error(odometry, "times.txt:4", "earlier than the one before");
+}
+
+TEST_F(Dataset, FewerTimesThanImagesIsAnError) {
+  const fs::path odometry = kitti_odometry();
+  write(odometry / "times.txt", "0\n0.1\n0.2\n");
+  expect_error(odometry, "image_0", "times.txt ends at line 3");
+  const fs::path raw = kitti_raw();
+  write(raw / "image_00/timestamps.txt", "2011-09-26 13:04:32.351950336\n2011-09-26 25:04:32\n");
+  expect_error(raw, "timestamps.txt:2", "is not a time");
+}
+
+TEST_F(Dataset, CamerasThatNeverCoincideAreAnError) {
+  const fs::path root = euroc();
+  std::string csv;
+  for (int i = 0; i < kPairs; ++i) csv += std::to_string(time_ns(i) + 20'000'000) + "," + png(i) + "\n";
+  write(root / "mav0/cam1/data.csv", csv);
+  expect_error(root, "mav0", "has a right one");
+}
+
+TEST_F(Dataset, ACameraWithoutImagesIsAnError) {
+  const fs::path root = euroc();
+  fs::remove_all(root / "mav0/cam1/data");
+  expect_error(root, "cam1", "none of the 8 listed images is there");
+  fs::remove_all(root / "mav0/cam1");
+  expect_error(root, "mav0", "has cam0 but no cam1");
+}
+
+TEST_F(Dataset, FoldersThatAreNoRecordingAreErrors) {
+  expect_error(folder_ / "absent", "absent", "does not exist");
+  fs::create_directories(folder_ / "hollow");
+  expect_error(folder_ / "hollow", "hollow", "empty");
+  write(folder_ / "other/readme.txt", "x");
+  expect_error(folder_ / "other", "other", "no known data set");
+  expect_error(folder_ / "other/readme.txt", "readme.txt", "is not a folder");
+}
+
+TEST_F(Dataset, ACalibrationThatCannotBeNamesItsFile) {
+  const fs::path root = euroc();
+  const fs::path sensor = root / "mav0/cam1/sensor.yaml";
+  write(sensor, sensor_yaml(T_BS_at(0.0)));
+  expect_error(root, "cam1/sensor.yaml", "no baseline");
+  write(sensor, sensor_yaml(T_BS_at(-0.11)));
+  expect_error(root, "cam1/sensor.yaml", "negative baseline");
+  write(sensor, sensor_yaml("1, 0, 0, 0.1"));
+  expect_error(root, "cam1/sensor.yaml:4", "'T_BS' has 4 numbers instead of 16");
+  write(sensor, sensor_yaml(T_BS_at(0.11), "omni"));
+  expect_error(root, "cam1/sensor.yaml:11", "unknown lens model 'omni'");
+  write(sensor, "a: [1, 2\nb: 3\n");
+  expect_error(root, "cam1/sensor.yaml", "not valid YAML");
+  fs::remove(sensor);
+  expect_error(root, "cam1/sensor.yaml", "cannot be read");
+  const fs::path odometry = kitti_odometry();
+  write(odometry / "calib.txt", "P0: 60 0 31.5 0 0 60 23.5 0 0 0 1 0\nP1: 60 0 31.5 30 0 60 23.5 0 0 0 1 0\n");
+  expect_error(odometry, "calib.txt:2", "negative baseline");
+  write(odometry / "calib.txt", "P0: 60 0 31.5 0 0 60 23.5 0 0 0 1 0\n");
+  expect_error(odometry, "calib.txt", "'P1' is missing");
+}
+
+TEST_F(Dataset, TheUsersCalibrationReplacesABrokenOneAndKeepsTheBody) {
+  const fs::path root = euroc();
+  LoadedCalibration given{open(root)->calibration(), "mine.yaml", {}};
+  given.calibration.T_right_left.translation().x() = -0.2;
+  given.calibration.body_known = false;
+  write(root / "mav0/cam0/sensor.yaml", sensor_yaml("1, 0, 0, 0.3, 0, 1, 0, 0.4, 0, 0, 1, 0, 0, 0, 0, 1"));
+  auto source = open_dataset(root, given);
+  ASSERT_TRUE(source.ok()) << source.error().message();
+  EXPECT_NE(source.value()->description().find("mine.yaml"), std::string::npos);
+  EXPECT_EQ(source.value()->calibration().T_right_left.translation().x(), -0.2);
+  fs::remove(root / "mav0/cam0/sensor.yaml");
+  EXPECT_TRUE(open_dataset(root, given).ok());
+}
+
+}  // namespace
+}  // namespace pelorus
