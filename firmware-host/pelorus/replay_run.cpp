@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "core/geometry/rectifier.h"
 #include "core/pipeline/pipeline.h"
 #include "firmware-host/pelorus/overlay.h"
 #include "firmware-host/pelorus/result_files.h"
@@ -127,14 +128,25 @@ class SummaryCounter {
   std::vector<std::int64_t> step_us_;
 };
 
-Result<StereoRig> rig_of_rectified(const StereoCalibration& calibration) {
-  if (!calibration.rectified) {
-    return Error{ErrorCode::unsupported, "calibration", "images that need rectification are not supported yet", ""};
+// The pair as the pipeline wants it: rectified images, which are the source's own when there is nothing to do.
+class RectifiedPair {
+ public:
+  explicit RectifiedPair(const Rectifier& rectifier) : rectifier_(rectifier) {}
+
+  [[nodiscard]] StereoFrame frame_of(const SourcePair& pair, FrameTiming& timing) {
+    if (rectifier_.is_pass_through()) return {pair.seq, pair.capture_time, pair.left.view(), pair.right.view()};
+    const Clock::time_point start = Clock::now();
+    rectifier_.apply_left(pair.left.view(), left_);
+    rectifier_.apply_right(pair.right.view(), right_);
+    timing.rectify_us = microseconds_since(start);
+    return {pair.seq, pair.capture_time, left_.view(), right_.view()};
   }
-  const CameraIntrinsics& left = calibration.left;
-  return StereoRig{left.width, left.height, left.fx_px,
-                   left.cx_px, left.cy_px,  -calibration.T_right_left.translation().x()};
-}
+
+ private:
+  const Rectifier& rectifier_;
+  Image left_;
+  Image right_;
+};
 
 Result<Ok> draw_overlay(const Overlay& overlay, const ReplayOptions& options, const StereoFrame& frame,
                         const FrameResult& result, const Pipeline& pipeline) {
@@ -154,10 +166,11 @@ Result<Ok> make_overlay_folder(const ReplayOptions& options) {
 }
 
 // Steps until the data end; an Error is what ended it early.
-Result<Ok> run_frames(PairFeed& feed, const ReplayOptions& options, const StereoRig& rig, ResultWriter& writer,
+Result<Ok> run_frames(PairFeed& feed, const ReplayOptions& options, const Rectifier& rectifier, ResultWriter& writer,
                       SummaryCounter& counter, std::uint64_t total) {
-  Pipeline pipeline(options.pipeline, rig);
-  Overlay overlay(rig);
+  Pipeline pipeline(options.pipeline, rectifier.rig());
+  Overlay overlay(rectifier.rig());
+  RectifiedPair rectified(rectifier);
   SourcePair pair;
   for (std::uint64_t index = 0;; ++index) {
     FrameTiming timing;
@@ -166,7 +179,7 @@ Result<Ok> run_frames(PairFeed& feed, const ReplayOptions& options, const Stereo
     if (!more) return more.error();
     if (!more.value()) return Ok{};
     timing.read_us = microseconds_since(start);
-    const StereoFrame frame{pair.seq, pair.capture_time, pair.left.view(), pair.right.view()};
+    const StereoFrame frame = rectified.frame_of(pair, timing);
     start = Clock::now();
     const FrameResult& result = pipeline.step(frame);
     timing.step_us = microseconds_since(start);
@@ -183,8 +196,8 @@ Result<Ok> run_frames(PairFeed& feed, const ReplayOptions& options, const Stereo
 }  // namespace
 
 Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& options) {
-  Result<StereoRig> rig = rig_of_rectified(source.calibration());
-  if (!rig) return rig.error();
+  Result<Rectifier> rectifier = Rectifier::create(source.calibration(), "calibration");
+  if (!rectifier) return rectifier.error();
   Result<ResultWriter> writer = ResultWriter::create(options.out_folder);
   if (!writer) return writer.error();
   if (Result<Ok> made = make_overlay_folder(options); !made) return made.error();
@@ -192,7 +205,7 @@ Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& opti
   if (options.max_frames > 0) total = total > 0 ? std::min(total, options.max_frames) : options.max_frames;
   PairFeed feed(source, options);
   SummaryCounter counter;
-  Result<Ok> outcome = run_frames(feed, options, rig.value(), writer.value(), counter, total);
+  Result<Ok> outcome = run_frames(feed, options, rectifier.value(), writer.value(), counter, total);
   std::optional<Error> failure;
   if (!outcome) failure = outcome.error();
   return counter.finish(feed, std::move(failure));
