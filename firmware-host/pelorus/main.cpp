@@ -7,6 +7,7 @@
 
 #include "firmware-host/pelorus/command.h"
 #include "firmware-host/pelorus/replay.h"
+#include "firmware-host/pelorus/synth.h"
 
 namespace {
 
@@ -16,6 +17,7 @@ int run_tool(int argc, char** argv) {
   app.require_subcommand(1);
   std::vector<pelorus::Verb> verbs;
   verbs.push_back(pelorus::add_replay(app));
+  verbs.push_back(pelorus::add_synth(app));
   CLI11_PARSE(app, argc, argv);
   for (const pelorus::Verb& verb : verbs) {
     if (!verb.parser->parsed()) continue;

@@ -1,0 +1,40 @@
+#pragma once
+// From albedo to the radiance that reaches the camera: Lambert shading by soft daylight and the carried lamp, soft
+// shadows of bodies, caustics, attenuation and backscatter on the way (Jaffe 1990, simplest form). Frame: sea. Pure.
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "drivers/synthetic/ray_batch.h"
+#include "drivers/synthetic/scene.h"
+#include "drivers/synthetic/solids.h"
+
+namespace pelorus::synthetic {
+
+class Lighting {
+ public:
+  Lighting(const Scene& scene, double t_s, const Rigid3& T_sea_cam, const std::vector<Solid>& solids);
+  // batch.radiance: albedo in, radiance at the camera out.
+  void illuminate(RayBatch& batch) const;
+  // Strength of the lamp in a direction (cosine to its axis) at a distance; also lights marine snow.
+  [[nodiscard]] float lamp_at(float cos_axis, float distance_m) const;
+  [[nodiscard]] float daylight() const { return daylight_; }
+
+ private:
+  void add_daylight(const RayBatch& batch, const std::vector<Eigen::Vector3f>& hits, BatchFloats& light) const;
+  void add_lamp(const RayBatch& batch, const std::vector<Eigen::Vector3f>& hits, BatchFloats& light) const;
+  void add_caustics(const std::vector<Eigen::Vector3f>& hits, BatchFloats& light) const;
+
+  const std::vector<Solid>* solids_;
+  Water water_;
+  Light light_;
+  float daylight_;
+  float time_s_;
+  std::uint32_t caustics_seed_;
+  Eigen::Vector3f v_sea_sun_;   // towards the light
+  Eigen::Vector3f p_sea_lamp_;  // on the vehicle, beside and above the camera
+  Eigen::Vector3f v_sea_beam_;  // axis of the lamp
+};
+
+}  // namespace pelorus::synthetic

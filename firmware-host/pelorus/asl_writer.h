@@ -1,0 +1,40 @@
+#pragma once
+// Writes a synthetic dive as an EuRoC ASL folder: mav0/cam0, mav0/cam1 (data.csv, sensor.yaml, data/<ns>.png),
+// mav0/state_groundtruth_estimate0 (T_world_body, body = rectified left camera) and, per moving body k = 1, 2, ...,
+// mav0/object<k>/data.csv (T_world_obj, visible_px). Nothing bears the final name before everything is written.
+// Thread-bound.
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "core/base/result.h"
+#include "drivers/synthetic/synthetic_source.h"
+
+namespace pelorus {
+
+class AslWriter {
+ public:
+  // Work goes to `<folder>.partial`. An existing, non-empty folder is an error unless `replace`.
+  [[nodiscard]] static Result<AslWriter> open(const std::filesystem::path& folder, bool replace,
+                                              const synthetic::SyntheticSource& source);
+  // The pair rendered last by the source, with its truth.
+  [[nodiscard]] Result<> append(int frame, const SourcePair& pair, const synthetic::SyntheticSource& source);
+  // Gives the folder its name.
+  [[nodiscard]] Result<> finish();
+
+ private:
+  AslWriter(std::filesystem::path folder, bool replace);
+  [[nodiscard]] Result<> write_headers(const synthetic::SyntheticSource& source);
+  [[nodiscard]] Result<> write_camera(int side, const StereoCalibration& calibration, double rate_hz);
+
+  std::filesystem::path folder_;
+  std::filesystem::path partial_;
+  bool replace_;
+  std::ofstream lists_[2];
+  std::ofstream camera_truth_;
+  std::vector<std::ofstream> object_truth_;
+};
+
+}  // namespace pelorus
