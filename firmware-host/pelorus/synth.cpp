@@ -85,7 +85,7 @@ Verb add_synth(CLI::App& app) {
   CLI::App* parser = app.add_subcommand("synth", "Render a synthetic dive with exact truth (EuRoC ASL folder)");
   parser
       ->add_option("scene", options->scene,
-                   "Scene file, or the name of a shipped scene: paper, static"
+                   "Scene file, or the name of a shipped scene: paper, static")
       ->required()
       ->type_name("SCENE");
   parser->add_option("--out", options->out, "Folder to write; must not exist or be empty")
