@@ -1,0 +1,31 @@
+#pragma once
+// The table of configuration keys: section and key in the file, the setting it fills, the range it may have. Sections
+// follow the stages; keys carry their unit (_px, _m, _s, _deg, ...), none means a count, a ratio or a chi-square.
+// Adding a setting = its default in the stage's Config struct, one line in config_fields.cpp, one in
+// config/pelorus.yaml; a test compares the three. Pure.
+
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "core/pipeline/config.h"
+
+namespace pelorus {
+
+// A setting in radians whose key is in degrees.
+struct DegreesOf {
+  double* radians = nullptr;
+};
+
+struct ConfigField {
+  std::string_view section;
+  std::string_view key;
+  std::variant<bool*, int*, double*, DegreesOf> value;  // into the PipelineConfig given to config_fields
+  double low = 0;                                       // inclusive, in the unit of the key; unused for switches
+  double high = 0;
+};
+
+// Every setting of `config`, in the order of config/pelorus.yaml. Valid while `config` lives.
+[[nodiscard]] std::vector<ConfigField> config_fields(PipelineConfig& config);
+
+}  // namespace pelorus
