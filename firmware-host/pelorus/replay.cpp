@@ -3,11 +3,13 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "firmware-host/pelorus/replay_interrupt.h"
 #include "firmware-host/pelorus/replay_run.h"
 #include "firmware-host/pelorus/replay_source.h"
 #include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/runtime/config_loader.h"
 
 namespace pelorus {
 namespace {
@@ -16,6 +18,7 @@ struct ReplayArguments {
   std::string dataset;
   std::string out;
   std::string calibration;
+  std::vector<std::string> configs;
   std::uint64_t frames = 0;
   bool overlay = false;
   int overlay_every = 1;
@@ -25,13 +28,16 @@ struct ReplayArguments {
 };
 
 Result<int> run_verb(const ReplayArguments& arguments) {
+  ReplayOptions options;
+  for (const std::string& file : arguments.configs) {
+    if (Result<Ok> applied = apply_config_file(file, options.pipeline); !applied) return applied.error();
+  }
   // The source first: a mistyped data set must not leave an output folder behind.
   Result<std::unique_ptr<StereoSource>> source = open_source(arguments.dataset, arguments.calibration);
   if (!source) return source.error();
   std::fprintf(stderr, "%s\n", source.value()->description().c_str());
   if (Result<Ok> ready = prepare_output_folder(arguments.out, arguments.overwrite); !ready) return ready.error();
 
-  ReplayOptions options;
   options.out_folder = arguments.out;
   options.max_frames = arguments.frames;
   options.realtime = arguments.realtime;
@@ -59,6 +65,8 @@ Verb add_replay(CLI::App& app) {
   parser->add_option("--out", arguments->out, "Output folder: camera.tum, objects.csv, frames.csv, timing.csv")
       ->required();
   parser->add_option("--calib", arguments->calibration, "Calibration file instead of the data set's own");
+  parser->add_option("--config", arguments->configs, "Settings file (config/pelorus.yaml); several apply in turn")
+      ->allow_extra_args(false);
   parser->add_option("--frames", arguments->frames, "Take the first N pairs only");
   parser->add_flag("--overlay", arguments->overlay, "Write annotated pictures to OUT/overlay");
   parser->add_option("--overlay-every", arguments->overlay_every, "Picture of every N-th frame")
@@ -68,7 +76,7 @@ Verb add_replay(CLI::App& app) {
   parser->add_flag("--stepped", arguments->stepped, "Every pair, as fast as possible (default)")->excludes(realtime);
   parser->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in OUT");
   parser->footer(
-      "Exit codes: 0 done, 2 usage, 3 bad input, 4 calibration, 6 output, 130 interrupted.\n"
+      "Exit codes: 0 done, 2 usage, 3 bad input, 4 calibration, 5 configuration, 6 output, 130 interrupted.\n"
       "On an error midway everything processed before it is kept.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
