@@ -1,6 +1,7 @@
 #include "drivers/synthetic/lighting.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "drivers/synthetic/seeded_hash.h"
@@ -9,19 +10,18 @@
 namespace pelorus::synthetic {
 namespace {
 
-// exp(x) for x <= 0, relative error below 1e-6; the same bits everywhere, which the library's is not.
+constexpr float kLampReferenceM = 3.0F;
+
+}  // namespace
+
 float decay(float x) {
   const float scaled = std::max(x, -80.0F) * 1.44269504F;
   const int whole = lattice::floor_to_int(scaled);
   const float y = (scaled - static_cast<float>(whole)) * 0.693147181F;
   const float series =
       1.0F + y * (1.0F + y * (0.5F + y * (1.0F / 6 + y * (1.0F / 24 + y * (1.0F / 120 + y * (1.0F / 720))))));
-  return std::ldexp(series, whole);
+  return series * std::bit_cast<float>((whole + 127) << 23);  // 2^whole
 }
-
-constexpr float kLampReferenceM = 3.0F;
-
-}  // namespace
 
 Lighting::Lighting(const Scene& scene, double t_s, const Rigid3& T_sea_cam, const std::vector<Solid>& solids)
     : solids_(&solids),
@@ -43,6 +43,16 @@ float Lighting::lamp_at(float cos_axis, float distance_m) const {
   const float spread = kLampReferenceM * kLampReferenceM / (near_m * near_m);
   const float lost = decay(-static_cast<float>(water_.attenuation_per_m) * (distance_m - kLampReferenceM));
   return static_cast<float>(light_.carried) * beam * spread * lost;
+}
+
+float Lighting::light_on_flake(const Eigen::Vector3f& p_sea) const {
+  float light = daylight_;
+  if (light_.carried > 0) {
+    const Eigen::Vector3f from_lamp = p_sea - p_sea_lamp_;
+    const float distance = from_lamp.norm();
+    light += lamp_at(from_lamp.dot(v_sea_beam_) / std::max(distance, 1e-3F), distance);
+  }
+  return light;
 }
 
 void Lighting::add_daylight(const RayBatch& batch, const std::vector<Eigen::Vector3f>& hits, BatchFloats& light) const {

@@ -12,16 +12,20 @@
 
 namespace pelorus::synthetic {
 
+// exp(x) for x <= 0, relative error below 1e-6; the same bits everywhere, which the library's is not.
+[[nodiscard]] float decay(float x);
+
 class Lighting {
  public:
   Lighting(const Scene& scene, double t_s, const Rigid3& T_sea_cam, const std::vector<Solid>& solids);
   // batch.radiance: albedo in, radiance at the camera out.
   void illuminate(RayBatch& batch) const;
-  // Strength of the lamp in a direction (cosine to its axis) at a distance; also lights marine snow.
-  [[nodiscard]] float lamp_at(float cos_axis, float distance_m) const;
-  [[nodiscard]] float daylight() const { return daylight_; }
+  // Light that falls on something small in the water.
+  [[nodiscard]] float light_on_flake(const Eigen::Vector3f& p_sea) const;
 
  private:
+  // Strength of the lamp in a direction (cosine to its axis) at a distance.
+  [[nodiscard]] float lamp_at(float cos_axis, float distance_m) const;
   void add_daylight(const RayBatch& batch, const std::vector<Eigen::Vector3f>& hits, BatchFloats& light) const;
   void add_lamp(const RayBatch& batch, const std::vector<Eigen::Vector3f>& hits, BatchFloats& light) const;
   void add_caustics(const std::vector<Eigen::Vector3f>& hits, BatchFloats& light) const;

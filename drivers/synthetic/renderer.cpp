@@ -6,6 +6,7 @@
 #include <thread>
 
 #include "drivers/synthetic/lighting.h"
+#include "drivers/synthetic/marine_snow.h"
 #include "drivers/synthetic/row_workers.h"
 
 namespace pelorus::synthetic {
@@ -59,6 +60,7 @@ void Renderer::render(int frame, Image& left, Image& right) {
   std::vector<Solid> solids = place_bodies(scene_, scene_.time_s(frame));
   solids.insert(solids.end(), rocks_.begin(), rocks_.end());
   const Lighting lighting(scene_, scene_.time_s(frame), T_sea_cam, solids);
+  const std::vector<Flake> flakes = drifting_flakes(scene_, scene_.time_s(frame), T_sea_cam);
   for (int side = 0; side < 2; ++side) {
     const Eigen::Vector3d p_cam(side * scene_.camera.baseline_m, 0, 0);
     View view;
@@ -72,6 +74,8 @@ void Renderer::render(int frame, Image& left, Image& right) {
     view.seafloor.trace(floor_, scene_.camera.width_px, scene_.camera.height_px,
                         [&](RayBatch& batch) { view.set_rays(batch); });
     render_view(view, film_[side]);
+    if (scene_.water.blur_px_per_m > 0) blur_by_depth(scene_.water.blur_px_per_m, threads_, film_[side]);
+    draw_flakes(flakes, scene_.camera, view.p_sea_cam, view.R_sea_cam, lighting, film_[side]);
     const auto shot = 2 * static_cast<std::uint64_t>(frame) + static_cast<std::uint64_t>(side);
     expose(film_[side], scene_.sensor, scene_.seed, shot, threads_, side == 0 ? left : right);
   }

@@ -20,7 +20,7 @@ class Renderer {
   explicit Renderer(const Scene& scene, int threads = 0);
 
   void render(int frame, Image& left, Image& right);
-  // Of the last frame: left pixels on each body of the scene, in its order; depth of every left pixel [m] and key.
+  // Of the last frame: left pixels on each body of the scene, in its order.
   [[nodiscard]] const std::vector<int>& visible_px() const { return visible_px_; }
   [[nodiscard]] const Film& left_film() const { return film_[0]; }
 
@@ -38,7 +38,6 @@ class Renderer {
   SurfaceTexture texture_;
   std::vector<Solid> rocks_;
   Film film_[2];
-  std::vector<float> edge_radiance_;
   std::vector<int> visible_px_;
 };
 

@@ -17,8 +17,8 @@ struct OctaveFloats {
   std::uint32_t seed;
 };
 
-PELORUS_WIDE_LOOPS void add_octave(const OctaveFloats& octave, const float* x, const float* y, float* z, float* dz_dx,
-                                   float* dz_dy, int size) {
+PELORUS_WIDE_LOOPS void add_octave(const OctaveFloats& octave, const float* __restrict x, const float* __restrict y,
+                                   float* __restrict z, float* __restrict dz_dx, float* __restrict dz_dy, int size) {
   const float c = octave.c * octave.inverse_spacing;
   const float s = octave.s * octave.inverse_spacing;
   for (int i = 0; i < size; ++i) {

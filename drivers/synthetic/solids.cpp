@@ -64,13 +64,12 @@ PELORUS_ALWAYS_INLINE LocalHit hit_box(const LocalView& s, float dx, float dy, f
   const bool through_x = !through_z & (ex >= ey);
   const bool through_y = !through_z & !through_x;
   LocalHit hit;
-  hit.t = enter < leave ? enter : 2.0F * kFarM;
-  hit.nx = through_x ? (dx > 0 ? -1.0F : 1.0F) : 0.0F;
-  hit.ny = through_y ? (dy > 0 ? -1.0F : 1.0F) : 0.0F;
-  hit.nz = through_z ? (dz > 0 ? -1.0F : 1.0F) : 0.0F;
-  const std::int32_t axis = through_x ? 0 : (through_y ? 2 : 4);
-  const float along = through_x ? dx : (through_y ? dy : dz);
-  hit.face = axis + static_cast<std::int32_t>(along > 0);
+  hit.t = choose(mask_of(enter < leave), enter, 2.0F * kFarM);
+  hit.nx = choose(mask_of(through_x), choose(mask_of(dx > 0), -1.0F, 1.0F), 0.0F);
+  hit.ny = choose(mask_of(through_y), choose(mask_of(dy > 0), -1.0F, 1.0F), 0.0F);
+  hit.nz = choose(mask_of(through_z), choose(mask_of(dz > 0), -1.0F, 1.0F), 0.0F);
+  const auto axis = static_cast<std::int32_t>(through_y) * 2 + static_cast<std::int32_t>(through_z) * 4;
+  hit.face = axis + static_cast<std::int32_t>(hit.nx + hit.ny + hit.nz < 0);
   return hit;
 }
 
@@ -93,7 +92,8 @@ PELORUS_ALWAYS_INLINE LocalHit hit_ellipsoid(const LocalView& s, float dx, float
   const float cz = bz + t_near * az;
   const float inside = 1.0F - (cx * cx + cy * cy + cz * cz);
   LocalHit hit;
-  hit.t = inside > 0 ? t_near - std::sqrt(std::max(inside, 0.0F) / a) : 2.0F * kFarM;
+  const std::uint32_t met = mask_of(inside > 0);
+  hit.t = choose(met, t_near - std::sqrt(choose(met, inside, 0.0F) / a), 2.0F * kFarM);
   const float gx = (s.ox + hit.t * dx) * kx * kx;
   const float gy = (s.oy + hit.t * dy) * ky * ky;
   const float gz = (s.oz + hit.t * dz) * kz * kz;
@@ -106,24 +106,27 @@ PELORUS_ALWAYS_INLINE LocalHit hit_ellipsoid(const LocalView& s, float dx, float
 }
 
 template <class HitShape>
-PELORUS_ALWAYS_INLINE void intersect_shape(const LocalView& s, RayBatch& batch, const HitShape& hit_shape) {
+PELORUS_ALWAYS_INLINE void intersect_shape(const LocalView& view, RayBatch& __restrict batch,
+                                           const HitShape& hit_shape) {
+  const LocalView s = view;  // a copy that no store to the batch can change
   for (int i = 0; i < kBatch; ++i) {
     const float dx = s.r[0] * batch.dx[i] + s.r[3] * batch.dy[i] + s.r[6] * batch.dz[i];
     const float dy = s.r[1] * batch.dx[i] + s.r[4] * batch.dy[i] + s.r[7] * batch.dz[i];
     const float dz = s.r[2] * batch.dx[i] + s.r[5] * batch.dy[i] + s.r[8] * batch.dz[i];
     const LocalHit hit = hit_shape(s, dx, dy, dz);
-    const bool nearer = (hit.t < batch.t[i]) & (hit.t > 0.0F);
-    batch.t[i] = nearer ? hit.t : batch.t[i];
-    batch.px[i] = nearer ? s.ox + hit.t * dx : batch.px[i];
-    batch.py[i] = nearer ? s.oy + hit.t * dy : batch.py[i];
-    batch.pz[i] = nearer ? s.oz + hit.t * dz : batch.pz[i];
-    batch.nx[i] = nearer ? s.r[0] * hit.nx + s.r[1] * hit.ny + s.r[2] * hit.nz : batch.nx[i];
-    batch.ny[i] = nearer ? s.r[3] * hit.nx + s.r[4] * hit.ny + s.r[5] * hit.nz : batch.ny[i];
-    batch.nz[i] = nearer ? s.r[6] * hit.nx + s.r[7] * hit.ny + s.r[8] * hit.nz : batch.nz[i];
-    batch.contrast[i] = nearer ? s.contrast : batch.contrast[i];
-    batch.brightness[i] = nearer ? s.brightness : batch.brightness[i];
-    batch.seed[i] = nearer ? s.seed : batch.seed[i];
-    batch.key[i] = nearer ? s.key + hit.face : batch.key[i];
+    const std::uint32_t nearer = mask_of((hit.t < batch.t[i]) & (hit.t > 0.0F));
+    batch.t[i] = choose(nearer, hit.t, batch.t[i]);
+    batch.px[i] = choose(nearer, s.ox + hit.t * dx, batch.px[i]);
+    batch.py[i] = choose(nearer, s.oy + hit.t * dy, batch.py[i]);
+    batch.pz[i] = choose(nearer, s.oz + hit.t * dz, batch.pz[i]);
+    batch.nx[i] = choose(nearer, s.r[0] * hit.nx + s.r[1] * hit.ny + s.r[2] * hit.nz, batch.nx[i]);
+    batch.ny[i] = choose(nearer, s.r[3] * hit.nx + s.r[4] * hit.ny + s.r[5] * hit.nz, batch.ny[i]);
+    batch.nz[i] = choose(nearer, s.r[6] * hit.nx + s.r[7] * hit.ny + s.r[8] * hit.nz, batch.nz[i]);
+    batch.contrast[i] = choose(nearer, s.contrast, batch.contrast[i]);
+    batch.brightness[i] = choose(nearer, s.brightness, batch.brightness[i]);
+    batch.seed[i] = choose(nearer, s.seed, batch.seed[i]);
+    batch.key[i] = static_cast<std::int32_t>(
+        choose(nearer, static_cast<std::uint32_t>(s.key + hit.face), static_cast<std::uint32_t>(batch.key[i])));
   }
 }
 
@@ -212,7 +215,7 @@ Solid rock_at(SeededHash& random, double x, double y, const Seabed& seabed, cons
                        .toRotationMatrix();
   const auto fx = static_cast<float>(x);
   const auto fy = static_cast<float>(y);
-  rock.p_sea = {fx, fy, floor.z_at(fx, fy) - 0.15F * rock.half_size_m.z()};
+  rock.p_sea = {fx, fy, floor.z_at(fx, fy) + 0.2F * rock.half_size_m.z()};
   rock.contrast = static_cast<float>(seabed.contrast * random.uniform(0.7, 1.2));
   rock.brightness = static_cast<float>(seabed.brightness * random.uniform(0.65, 1.25));
   rock.seed = random.bits32();

@@ -3,6 +3,7 @@
 // the math library, hence the same bits on every host. Aperiodic over 2^31 lattice cells. Values are within (-1, 1).
 // C2 interpolation (quintic, Perlin 2002). Pure.
 
+#include <bit>
 #include <cstdint>
 
 // Functions with hot loops are compiled twice and chosen when the program starts; contraction is off, so both give the
@@ -49,6 +50,15 @@ PELORUS_ALWAYS_INLINE float fade_slope(float t) { return 30.0F * t * t * (t * (t
 PELORUS_ALWAYS_INLINE float mix(float a, float b, float t) { return a + (b - a) * t; }
 
 }  // namespace lattice
+
+// a where the mask is all ones, b where it is zero: a choice that the compiler cannot turn back into a branch.
+PELORUS_ALWAYS_INLINE std::uint32_t mask_of(bool condition) { return 0U - static_cast<std::uint32_t>(condition); }
+PELORUS_ALWAYS_INLINE std::uint32_t choose(std::uint32_t mask, std::uint32_t a, std::uint32_t b) {
+  return (a & mask) | (b & ~mask);
+}
+PELORUS_ALWAYS_INLINE float choose(std::uint32_t mask, float a, float b) {
+  return std::bit_cast<float>(choose(mask, std::bit_cast<std::uint32_t>(a), std::bit_cast<std::uint32_t>(b)));
+}
 
 PELORUS_ALWAYS_INLINE float value_noise_3d(float x, float y, float z, std::uint32_t seed) {
   using namespace lattice;

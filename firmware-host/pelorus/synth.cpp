@@ -85,7 +85,8 @@ Verb add_synth(CLI::App& app) {
   CLI::App* parser = app.add_subcommand("synth", "Render a synthetic dive with exact truth (EuRoC ASL folder)");
   parser
       ->add_option("scene", options->scene,
-                   "Scene file, or the name of a shipped scene: paper, static")
+                   "Scene file, or the name of a shipped scene: paper, static, "
+                   "appear_occlude_stop, large_body, abreast, turbid, shapes")
       ->required()
       ->type_name("SCENE");
   parser->add_option("--out", options->out, "Folder to write; must not exist or be empty")
@@ -103,8 +104,8 @@ Verb add_synth(CLI::App& app) {
       "Truth: mav0/state_groundtruth_estimate0 (left camera), mav0/object<k> (moving bodies).\n"
       "Exit codes: 0 done, 2 usage, 5 scene file, 6 input/output.");
   return {parser, [options, seed] {
-    options->seed_given = seed->count() > 0;
-    return run_synth(*options);
+            options->seed_given = seed->count() > 0;
+            return run_synth(*options);
           }};
 }
 
