@@ -216,4 +216,11 @@ Result<Recording> list_kitti_raw(const fs::path& path) {
                     parse_date_time, "2011-09-26 13:04:32.351950336");
 }
 
+Result<LoadedCalibration> read_kitti_calibration(const fs::path& file) {
+  const auto keys = read_key_lines(file);
+  if (!keys) return keys.error();
+  if (keys.value().contains("P_rect_00")) return read_projections(file, "P_rect_00", "P_rect_01", "S_rect_00");
+  return read_projections(file, "P0", "P1", "");
+}
+
 }  // namespace pelorus

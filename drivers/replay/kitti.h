@@ -14,5 +14,7 @@ namespace pelorus {
 [[nodiscard]] Result<Recording> list_kitti_odometry(const std::filesystem::path& path);
 [[nodiscard]] bool is_kitti_raw(const std::filesystem::path& path);
 [[nodiscard]] Result<Recording> list_kitti_raw(const std::filesystem::path& path);
+// calib.txt or calib_cam_to_cam.txt, told apart by its keys; also for `load_calibration`.
+[[nodiscard]] Result<LoadedCalibration> read_kitti_calibration(const std::filesystem::path& file);
 
 }  // namespace pelorus
