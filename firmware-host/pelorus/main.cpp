@@ -5,6 +5,7 @@
 #include <exception>
 #include <vector>
 
+#include "firmware-host/pelorus/calib.h"
 #include "firmware-host/pelorus/command.h"
 #include "firmware-host/pelorus/replay.h"
 #include "firmware-host/pelorus/synth.h"
@@ -16,6 +17,7 @@ int run_tool(int argc, char** argv) {
   app.set_version_flag("--version", "pelorus " PELORUS_VERSION);
   app.require_subcommand(1);
   std::vector<pelorus::Verb> verbs;
+  verbs.push_back(pelorus::add_calib(app));
   verbs.push_back(pelorus::add_replay(app));
   verbs.push_back(pelorus::add_synth(app));
   CLI11_PARSE(app, argc, argv);

@@ -1,0 +1,74 @@
+#include "firmware-host/pelorus/calib.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "firmware-host/pelorus/replay_source.h"
+#include "tests/drivers/replay/recording_fixture.h"
+
+namespace pelorus {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Calib : public RecordingFixture {
+ protected:
+  // As main does: parse, then run. Usage errors of the parser count as 2.
+  static int run(std::vector<std::string> arguments) {
+    CLI::App app{"test"};
+    const Verb verb = add_calib(app);
+    std::reverse(arguments.begin(), arguments.end());
+    try {
+      app.parse(arguments);
+    } catch (const CLI::ParseError&) {
+      return 2;
+    }
+    const auto outcome = verb.run();
+    return outcome.ok() ? outcome.value() : exit_code(outcome.error().code);
+  }
+};
+
+TEST_F(Calib, ChecksADataSetAndDrawsItsRows) {
+  const fs::path root = euroc();
+  const fs::path picture = folder_ / "rows.png";
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(run({"calib", "check", root.string(), "--out", picture.string()}), 0);
+  const std::string text = testing::internal::GetCapturedStdout();
+  for (const char* word : {"baseline 0.11000 m", "view", "assumed", "64x48", "radtan", "rows"})
+    EXPECT_NE(text.find(word), std::string::npos) << word << " in\n" << text;
+  EXPECT_EQ(cv::imread(picture.string()).cols, 2 * kWidth);
+}
+
+TEST_F(Calib, ConvertsAndTheResultChecks) {
+  const fs::path root = euroc();
+  for (const char* format : {"opencv", "kalibr", "ros", "euroc"}) {
+    const fs::path out = folder_ / (std::string(format) + ".yaml");
+    EXPECT_EQ(run({"calib", "convert", root.string(), "--to", format, "--out", out.string()}), 0) << format;
+    EXPECT_EQ(run({"calib", "check", root.string(), "--calib", out.string()}), 0) << format;
+    EXPECT_EQ(run({"calib", "check", out.string(), "--image-left", (root / "mav0/cam0/data" / png(0)).string(),
+                   "--image-right", (root / "mav0/cam1/data" / png(0)).string()}), 0) << format;
+    auto source = open_source(root.string(), out.string());
+    ASSERT_TRUE(source.ok()) << source.error().message();
+    EXPECT_NEAR(source.value()->calibration().T_right_left.translation().x(), -0.11, 1e-12) << format;
+  }
+}
+
+TEST_F(Calib, ExitCodesTellWhatWasWrong) {
+  const fs::path root = euroc();
+  EXPECT_EQ(run({"calib"}), 2);
+  EXPECT_EQ(run({"calib", "convert", root.string(), "--to", "matlab", "--out", "x"}), 2);
+  EXPECT_EQ(run({"calib", "check", (folder_ / "absent").string()}), 6);
+  EXPECT_EQ(run({"calib", "check", root.string(), "--pair", "99"}), 2);
+  const fs::path sensor = root / "mav0/cam1/sensor.yaml";
+  EXPECT_EQ(run({"calib", "check", (root / "mav0").string(), "--out", "/proc/none/rows.png"}), 6);
+  write(sensor, sensor_yaml(T_BS_at(-0.11)));
+  EXPECT_EQ(run({"calib", "check", root.string()}), 4);
+  write_image(folder_ / "small.png", 3, 32, 32);
+  EXPECT_EQ(run({"calib", "check", kitti_odometry().string(), "--image-left", (folder_ / "small.png").string(),
+                 "--image-right", (folder_ / "none.png").string()}), 3);
+}
+
+}  // namespace
+}  // namespace pelorus
