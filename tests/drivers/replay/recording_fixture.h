@@ -10,6 +10,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <string>
 
+#include "tests/support/temporary_folder.h"
+
 namespace pelorus {
 
 class RecordingFixture : public testing::Test {
@@ -19,15 +21,6 @@ class RecordingFixture : public testing::Test {
   static constexpr int kPairs = 8;
   static constexpr int kWidth = 64;
   static constexpr int kHeight = 48;
-
-  void SetUp() override {
-    const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() /
-              ("pelorus_" + std::string(test->test_suite_name()) + "_" + test->name());
-    std::filesystem::remove_all(folder_);
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
   static void write(const std::filesystem::path& file, const std::string& content) {
     std::filesystem::create_directories(file.parent_path());
@@ -105,7 +98,8 @@ class RecordingFixture : public testing::Test {
     return root;
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path folder_ = temporary_.path();
 };
 
 }  // namespace pelorus

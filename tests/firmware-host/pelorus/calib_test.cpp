@@ -48,7 +48,9 @@ TEST_F(Calib, ConvertsAndTheResultChecks) {
     EXPECT_EQ(run({"calib", "convert", root.string(), "--to", format, "--out", out.string()}), 0) << format;
     EXPECT_EQ(run({"calib", "check", root.string(), "--calib", out.string()}), 0) << format;
     EXPECT_EQ(run({"calib", "check", out.string(), "--image-left", (root / "mav0/cam0/data" / png(0)).string(),
-                   "--image-right", (root / "mav0/cam1/data" / png(0)).string()}), 0) << format;
+                   "--image-right", (root / "mav0/cam1/data" / png(0)).string()}),
+              0)
+        << format;
     auto source = open_source(root.string(), out.string());
     ASSERT_TRUE(source.ok()) << source.error().message();
     EXPECT_NEAR(source.value()->calibration().T_right_left.translation().x(), -0.11, 1e-12) << format;
@@ -67,7 +69,8 @@ TEST_F(Calib, ExitCodesTellWhatWasWrong) {
   EXPECT_EQ(run({"calib", "check", root.string()}), 4);
   write_image(folder_ / "small.png", 3, 32, 32);
   EXPECT_EQ(run({"calib", "check", kitti_odometry().string(), "--image-left", (folder_ / "small.png").string(),
-                 "--image-right", (folder_ / "none.png").string()}), 3);
+                 "--image-right", (folder_ / "none.png").string()}),
+            3);
 }
 
 }  // namespace
