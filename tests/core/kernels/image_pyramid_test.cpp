@@ -2,27 +2,20 @@
 
 #include <gtest/gtest.h>
 
-#include <random>
+#include <algorithm>
+#include <vector>
 
 #include "core/kernels/downsample.h"
 #include "tests/core/kernels/each_target.h"
+#include "tests/core/kernels/random_image.h"
 
 namespace pelorus {
 namespace {
 
-Image random_image(int width, int height) {
-  std::mt19937 rng(7);
-  Image image(width, height);
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width; ++u) image.row(v)[u] = static_cast<std::uint8_t>(rng());
-  }
-  return image;
-}
-
 TEST(ImagePyramid, VectorPathsEqualTheReferenceBitByBit) {
   for_each_target([] {
     for (const int width : {33, 64, 131, 752}) {
-      const Image image = random_image(width, 40);
+      const Image image = test::random_image(width, 40, 7);
       ImagePyramid pyramid;
       pyramid.build(image.view(), 2);
       const ImageView& fine = pyramid.level(0);
@@ -57,7 +50,7 @@ TEST(ImagePyramid, ARampKeepsItsPlaceOnEveryLevel) {
 }
 
 TEST(ImagePyramid, TheBorderRepeatsTheNearestPixel) {
-  const Image image = random_image(75, 50);
+  const Image image = test::random_image(75, 50, 7);
   ImagePyramid pyramid(75, 50, 2);
   pyramid.build(image.view(), 2);
   for (int i = 0; i < 2; ++i) {
@@ -72,7 +65,7 @@ TEST(ImagePyramid, TheBorderRepeatsTheNearestPixel) {
 }
 
 TEST(ImagePyramid, StorageStaysWhereItIsFromFrameToFrame) {
-  const Image image = random_image(128, 96);
+  const Image image = test::random_image(128, 96, 7);
   ImagePyramid pyramid(128, 96, 3);
   const std::uint8_t* before = pyramid.level(2).pixels;
   pyramid.build(image.view(), 3);
@@ -80,7 +73,7 @@ TEST(ImagePyramid, StorageStaysWhereItIsFromFrameToFrame) {
 }
 
 TEST(ImagePyramid, ATinyImageGetsTheLevelsItHasRoomFor) {
-  const Image image = random_image(40, 20);
+  const Image image = test::random_image(40, 20, 7);
   ImagePyramid pyramid;
   pyramid.build(image.view(), 6);
   EXPECT_EQ(pyramid.levels(), 1);

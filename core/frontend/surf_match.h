@@ -1,0 +1,71 @@
+#pragma once
+// Correspondences between two sets of SURF points: mutual nearest neighbours in descriptor distance that pass the
+// ratio test (Lowe 2004), among pairs of equal Laplacian sign (Bay et al. 2008, section 5) inside an optional gate.
+// Equal distances are decided by the lower index: results depend on nothing but the input. Thread-bound.
+// O(first * second) distances at most; no allocation after construction.
+
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "core/frontend/surf.h"
+
+namespace pelorus {
+
+// Where the partner of a point may lie: bounds on (partner - point), px; and a radius about it.
+struct SurfGate {
+  float min_du_px = -std::numeric_limits<float>::infinity();
+  float max_du_px = std::numeric_limits<float>::infinity();
+  float min_dv_px = -std::numeric_limits<float>::infinity();
+  float max_dv_px = std::numeric_limits<float>::infinity();
+  float radius_px = std::numeric_limits<float>::infinity();
+
+  [[nodiscard]] bool admits(const SurfPoint& point, const SurfPoint& partner) const;
+};
+
+// Left to right of a rectified pair: same row within the band, disparity u_left - u_right in the range.
+[[nodiscard]] SurfGate stereo_gate(float row_band_px, float min_disparity_px, float max_disparity_px);
+// Frame to frame.
+[[nodiscard]] SurfGate temporal_gate(float radius_px);
+
+struct SurfMatchConfig {
+  float max_ratio = 0.8F;     // of the best distance to the second best
+  float max_distance = 0.7F;  // of unit descriptors
+  int max_points = 4096;      // per set
+};
+
+struct SurfMatch {
+  std::int32_t first = 0;
+  std::int32_t second = 0;
+  float distance = 0;
+  float ratio = 0;  // 0 when there was no rival
+};
+
+class SurfMatcher {
+ public:
+  explicit SurfMatcher(const SurfMatchConfig& config);
+
+  // Ordered by `first`; valid until the next call. Sets beyond max_points are cut.
+  [[nodiscard]] std::span<const SurfMatch> match(std::span<const SurfPoint> first,
+                                                 std::span<const SurfDescriptor> first_descriptors,
+                                                 std::span<const SurfPoint> second,
+                                                 std::span<const SurfDescriptor> second_descriptors,
+                                                 const SurfGate& gate);
+
+ private:
+  struct Nearest {
+    float best = std::numeric_limits<float>::infinity();  // squared distances
+    float second_best = std::numeric_limits<float>::infinity();
+    std::int32_t index = -1;
+
+    void offer(float square, std::int32_t candidate);
+  };
+
+  SurfMatchConfig config_;
+  std::vector<Nearest> of_first_;
+  std::vector<Nearest> of_second_;
+  std::vector<SurfMatch> matches_;
+};
+
+}  // namespace pelorus

@@ -1,0 +1,196 @@
+#include "core/frontend/surf_scale_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "core/base/check.h"
+#include "core/kernels/box_hessian.h"
+
+namespace pelorus {
+namespace {
+
+constexpr int kRowSlack = 16;                // hessian_row may write past the row
+constexpr float kScalePerFilter = 1.2F / 9;  // the 9x9 filter stands for sigma 1.2 (Bay, section 3.3)
+
+int filter_size(int octave, int interval) { return 3 * ((2 << octave) * (interval + 1) + 1); }
+
+ResponseLayer make_layer(const SurfConfig& config, int octave, int interval, int width, int height) {
+  ResponseLayer layer;
+  layer.filter_size = filter_size(octave, interval);
+  layer.step = config.sampling_step << octave;
+  layer.width = (width - 1) / layer.step + 1;
+  layer.height = (height - 1) / layer.step + 1;
+  layer.stride = layer.width + kRowSlack;
+  const int reach = hessian_reach(layer.filter_size);
+  layer.first = (reach + layer.step - 1) / layer.step;
+  layer.last_u = (width - 1 - reach) / layer.step;
+  layer.last_v = (height - 1 - reach) / layer.step;
+  if (width - 1 < reach) layer.last_u = -1;
+  if (height - 1 < reach) layer.last_v = -1;
+  layer.response.assign(static_cast<std::size_t>(layer.stride * layer.height), 0.0F);
+  return layer;
+}
+
+void compute(const IntegralImage& integral, ResponseLayer& layer) {
+  const int count = layer.last_u - layer.first + 1;
+  if (count <= 0) return;
+  for (int j = layer.first; j <= layer.last_v; ++j) {
+    float* row = layer.row(j) + layer.first;
+    hessian_row(integral, layer.filter_size, layer.first * layer.step, j * layer.step, layer.step, count, row);
+    std::fill_n(row + count, kRowSlack, 0.0F);
+  }
+}
+
+// Every second sample of the same filter's layer one octave finer.
+void take(const ResponseLayer& finer, ResponseLayer& layer) {
+  for (int j = 0; j < layer.height; ++j) {
+    const float* from = finer.row(2 * j);
+    float* to = layer.row(j);
+    for (int i = 0; i < layer.width; ++i) to[i] = from[2 * i];
+  }
+}
+
+struct Neighbourhood {
+  const float* rows[3][3];  // [layer below, this, above][row]; element [i] is the middle column
+
+  Neighbourhood(const ResponseLayer& below, const ResponseLayer& middle, const ResponseLayer& above, int j) {
+    const ResponseLayer* layers[3] = {&below, &middle, &above};
+    for (int s = 0; s < 3; ++s) {
+      for (int r = 0; r < 3; ++r) rows[s][r] = layers[s]->row(j + r - 1);
+    }
+  }
+  [[nodiscard]] float at(int s, int r, int i) const { return rows[s + 1][r + 1][i]; }
+
+  // Strictly above what comes later and not below what came before, so that of two equals exactly one is a maximum.
+  [[nodiscard]] bool is_maximum(int i) const {
+    const float value = at(0, 0, i);
+    for (int s = -1; s <= 1; ++s) {
+      for (int r = -1; r <= 1; ++r) {
+        for (int c = -1; c <= 1; ++c) {
+          const int order = 9 * s + 3 * r + c;
+          if (order < 0 ? at(s, r, i + c) > value : order > 0 && at(s, r, i + c) >= value) return false;
+        }
+      }
+    }
+    return true;
+  }
+};
+
+struct Peak {
+  bool inside = false;  // of the cell around the sample
+  float du = 0, dv = 0, ds = 0;
+  float gain = 0;  // of the value over that of the sample
+};
+
+// Quadratic through the neighbourhood (Brown & Lowe 2002): offset = -H^-1 g.
+Peak interpolate(const Neighbourhood& n, int i) {
+  const float value = n.at(0, 0, i);
+  const float gu = 0.5F * (n.at(0, 0, i + 1) - n.at(0, 0, i - 1));
+  const float gv = 0.5F * (n.at(0, 1, i) - n.at(0, -1, i));
+  const float gs = 0.5F * (n.at(1, 0, i) - n.at(-1, 0, i));
+  const float uu = n.at(0, 0, i + 1) + n.at(0, 0, i - 1) - 2 * value;
+  const float vv = n.at(0, 1, i) + n.at(0, -1, i) - 2 * value;
+  const float ss = n.at(1, 0, i) + n.at(-1, 0, i) - 2 * value;
+  const float uv = 0.25F * (n.at(0, 1, i + 1) - n.at(0, 1, i - 1) - n.at(0, -1, i + 1) + n.at(0, -1, i - 1));
+  const float us = 0.25F * (n.at(1, 0, i + 1) - n.at(1, 0, i - 1) - n.at(-1, 0, i + 1) + n.at(-1, 0, i - 1));
+  const float vs = 0.25F * (n.at(1, 1, i) - n.at(1, -1, i) - n.at(-1, 1, i) + n.at(-1, -1, i));
+  const float c_uu = vv * ss - vs * vs;
+  const float c_uv = us * vs - uv * ss;
+  const float c_us = uv * vs - us * vv;
+  const float determinant = uu * c_uu + uv * c_uv + us * c_us;
+  if (!(std::abs(determinant) > 1e-20F)) return {};
+  const float scale = -1.0F / determinant;
+  Peak peak;
+  peak.du = scale * (c_uu * gu + c_uv * gv + c_us * gs);
+  peak.dv = scale * (c_uv * gu + (uu * ss - us * us) * gv + (uv * us - uu * vs) * gs);
+  peak.ds = scale * (c_us * gu + (uv * us - uu * vs) * gv + (uu * vv - uv * uv) * gs);
+  peak.gain = 0.5F * (gu * peak.du + gv * peak.dv + gs * peak.ds);
+  constexpr float kCell = 0.6F;  // a little over a half: a maximum between two samples must not be lost by both
+  peak.inside = std::abs(peak.du) <= kCell && std::abs(peak.dv) <= kCell && std::abs(peak.ds) <= kCell;
+  return peak;
+}
+
+bool stronger(const SurfPoint& a, const SurfPoint& b) {
+  return std::tie(b.response, a.v_px, a.u_px, a.scale) < std::tie(a.response, b.v_px, b.u_px, b.scale);
+}
+
+}  // namespace
+
+SurfScaleSpace::SurfScaleSpace(const SurfConfig& config, int width, int height) : config_(config) {
+  PELORUS_CHECK(config.octaves >= 1 && config.octaves <= 4, "SURF octaves must be 1..4");
+  PELORUS_CHECK(config.intervals >= 3 && config.intervals <= 5, "SURF intervals must be 3..5");
+  PELORUS_CHECK(config.max_points >= 1, "SURF needs room for points");
+  for (int o = 0; o < config.octaves; ++o) {
+    for (int i = 0; i < config.intervals; ++i) {
+      layers_.push_back(make_layer(config, o, i, width, height));
+      ResponseLayer& added = layers_.back();
+      const int finer = (o - 1) * config.intervals;
+      for (int k = 0; o > 0 && k < config.intervals; ++k) {
+        if (layers_[static_cast<std::size_t>(finer + k)].filter_size == added.filter_size) added.same_as = finer + k;
+      }
+    }
+  }
+  candidates_.reserve(static_cast<std::size_t>(std::max(4 * config.max_points, 8192)));
+}
+
+const ResponseLayer& SurfScaleSpace::layer(int octave, int interval) const {
+  return layers_[static_cast<std::size_t>(octave * config_.intervals + interval)];
+}
+
+void SurfScaleSpace::build(const IntegralImage& integral) {
+  for (ResponseLayer& layer : layers_) {
+    if (layer.same_as >= 0) {
+      take(layers_[static_cast<std::size_t>(layer.same_as)], layer);
+    } else {
+      compute(integral, layer);
+    }
+  }
+}
+
+void SurfScaleSpace::find_in(const IntegralImage& integral, int octave, int interval) {
+  const ResponseLayer& below = layer(octave, interval - 1);
+  const ResponseLayer& middle = layer(octave, interval);
+  const ResponseLayer& above = layer(octave, interval + 1);
+  const float filter_step = static_cast<float>(6 << octave);
+  const auto step = static_cast<float>(middle.step);
+  for (int j = above.first + 1; j < above.last_v; ++j) {
+    const Neighbourhood n(below, middle, above, j);
+    for (int i = above.first + 1; i < above.last_u; ++i) {
+      const float value = n.at(0, 0, i);
+      if (!(value > config_.threshold) || !n.is_maximum(i)) continue;
+      const Peak peak = interpolate(n, i);
+      if (!peak.inside) continue;
+      SurfPoint point;
+      point.u_px = (static_cast<float>(i) + peak.du) * step;
+      point.v_px = (static_cast<float>(j) + peak.dv) * step;
+      point.scale = kScalePerFilter * (static_cast<float>(middle.filter_size) + peak.ds * filter_step);
+      point.response = value + peak.gain;
+      const int sign = laplacian_sign(integral, middle.filter_size, i * middle.step, j * middle.step);
+      point.laplacian = static_cast<std::int8_t>(sign);
+      if (candidates_.size() == candidates_.capacity()) keep_strongest();
+      candidates_.push_back(point);
+    }
+  }
+}
+
+// Drops what cannot be among the answer any more; the order is total, so the result depends on nothing else.
+void SurfScaleSpace::keep_strongest() {
+  const auto wanted = static_cast<std::size_t>(config_.max_points);
+  if (candidates_.size() <= wanted) return;
+  const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(wanted);
+  std::nth_element(candidates_.begin(), end, candidates_.end(), stronger);
+  candidates_.resize(wanted);
+}
+
+std::span<const SurfPoint> SurfScaleSpace::find_maxima(const IntegralImage& integral) {
+  candidates_.clear();
+  for (int o = 0; o < config_.octaves; ++o) {
+    for (int i = 1; i + 1 < config_.intervals; ++i) find_in(integral, o, i);
+  }
+  keep_strongest();
+  std::sort(candidates_.begin(), candidates_.end(), stronger);
+  return candidates_;
+}
+
+}  // namespace pelorus

@@ -1,0 +1,186 @@
+// Repeatability and matching score of our SURF beside dlib's at the same number of points, on the Oxford "boat"
+// images (zoom and rotation, known homographies) and on rendered warps of it.
+//   surf_quality [points]
+
+#include <dlib/image_keypoint.h>
+#include <dlib/image_transforms.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "core/frontend/surf.h"
+#include "core/frontend/surf_match.h"
+
+namespace {
+
+using namespace pelorus;
+
+struct Features {
+  std::vector<SurfPoint> points;
+  std::vector<SurfDescriptor> descriptors;
+};
+
+Features ours(const cv::Mat& image, int count, bool upright) {
+  SurfConfig config;
+  config.threshold = 1.0F;
+  config.max_points = count;
+  config.upright = upright;
+  if (const char* o = std::getenv("OCT")) config.octaves = std::atoi(o);
+  Surf surf(config, image.cols, image.rows);
+  const auto points = surf.detect({image.data, image.cols, image.rows, static_cast<std::ptrdiff_t>(image.step)});
+  Features f{{points.begin(), points.end()}, std::vector<SurfDescriptor>(points.size())};
+  surf.describe(points, f.descriptors);
+  return f;
+}
+
+Features dlibs(const cv::Mat& image, int count) {
+  dlib::array2d<unsigned char> copy(image.rows, image.cols);
+  for (int v = 0; v < image.rows; ++v) {
+    for (int u = 0; u < image.cols; ++u) copy[v][u] = image.at<unsigned char>(v, u);
+  }
+  Features f;
+  for (const dlib::surf_point& p : dlib::get_surf_points(copy, count, 1.0)) {
+    SurfPoint point;
+    point.u_px = static_cast<float>(p.p.center.x());
+    point.v_px = static_cast<float>(p.p.center.y());
+    point.scale = static_cast<float>(p.p.scale);
+    point.laplacian = p.p.laplacian > 0 ? 1 : -1;
+    SurfDescriptor d;
+    for (int i = 0; i < 64; ++i) d[static_cast<std::size_t>(i)] = static_cast<float>(p.des(i));
+    f.points.push_back(point);
+    f.descriptors.push_back(d);
+  }
+  return f;
+}
+
+struct Placed {
+  Eigen::Vector2d p;
+  double zoom;
+};
+
+Placed map(const Eigen::Matrix3d& H, const SurfPoint& s) {
+  const Eigen::Vector3d q = H * Eigen::Vector3d(s.u_px, s.v_px, 1);
+  const double det = H.determinant() / std::pow(q.z(), 3);
+  return {q.hnormalized(), std::sqrt(std::abs(det))};
+}
+
+struct Score {
+  double repeatability = 0;  // share of the points both images show that were found again
+  double correct = 0;        // correct mutual matches per such point
+  double precision = 0;      // of the matches
+  double place_px = 0;       // median error of correct matches
+};
+
+bool agrees(const Placed& where, const SurfPoint& a, const SurfPoint& b) {
+  const double tolerance_px = 2.5;
+  const double distance = (where.p - Eigen::Vector2d(b.u_px, b.v_px)).norm();
+  return distance < tolerance_px && std::abs(std::log2(where.zoom * a.scale / b.scale)) < 0.6;
+}
+
+Score score(const Features& a, const Features& b, const Eigen::Matrix3d& H, const cv::Size& size) {
+  const auto inside = [&](const Eigen::Vector2d& p) {
+    return p.x() >= 0 && p.y() >= 0 && p.x() < size.width && p.y() < size.height;
+  };
+  const Eigen::Matrix3d H_back = H.inverse();
+  double common_b = 0;
+  for (const SurfPoint& p : b.points) common_b += inside(map(H_back, p).p);
+  double common_a = 0;
+  double found = 0;
+  for (const SurfPoint& p : a.points) {
+    const Placed where = map(H, p);
+    if (!inside(where.p)) continue;
+    ++common_a;
+    for (const SurfPoint& q : b.points) {
+      if (!agrees(where, p, q)) continue;
+      ++found;
+      break;
+    }
+  }
+  const double common = std::max(1.0, std::min(common_a, common_b));
+  SurfMatcher matcher({});
+  const auto matches = matcher.match(a.points, a.descriptors, b.points, b.descriptors, {});
+  std::vector<double> errors;
+  for (const SurfMatch& m : matches) {
+    const SurfPoint& p = a.points[static_cast<std::size_t>(m.first)];
+    const SurfPoint& q = b.points[static_cast<std::size_t>(m.second)];
+    const Placed where = map(H, p);
+    if (agrees(where, p, q)) errors.push_back((where.p - Eigen::Vector2d(q.u_px, q.v_px)).norm());
+  }
+  std::sort(errors.begin(), errors.end());
+  const auto correct = static_cast<double>(errors.size());
+  return {found / common, correct / common, correct / std::max<double>(1.0, static_cast<double>(matches.size())),
+          errors.empty() ? 0 : errors[errors.size() / 2]};
+}
+
+void compare(const std::string& name, const cv::Mat& a, const cv::Mat& b, const Eigen::Matrix3d& H, int count) {
+  const auto print = [&](const char* who, const Features& fa, const Features& fb) {
+    const Score s = score(fa, fb, H, b.size());
+    std::printf("%-22s %-14s %5zu %5zu  repeatability %5.1f%%  correct %5.1f%%  precision %5.1f%%  error %.2f px\n",
+                name.c_str(), who, fa.points.size(), fb.points.size(), 100 * s.repeatability, 100 * s.correct,
+                100 * s.precision, s.place_px);
+  };
+  print("ours oriented", ours(a, count, false), ours(b, count, false));
+  print("ours upright", ours(a, count, true), ours(b, count, true));
+  print("dlib", dlibs(a, count), dlibs(b, count));
+}
+
+Eigen::Matrix3d similarity(double angle_deg, double zoom, double cu, double cv) {
+  const double a = angle_deg * 3.14159265358979 / 180;
+  Eigen::Matrix3d R;
+  R << zoom * std::cos(a), -zoom * std::sin(a), cu, zoom * std::sin(a), zoom * std::cos(a), cv, 0, 0, 1;
+  Eigen::Matrix3d T = Eigen::Matrix3d::Identity();
+  T.block<2, 1>(0, 2) = Eigen::Vector2d(-cu, -cv);
+  return R * T;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const int count = argc > 1 ? std::atoi(argv[1]) : 1000;
+  const char* root = std::getenv("PELORUS_DATA_DIR");
+  const std::filesystem::path boat =
+      (root ? std::filesystem::path(root) : std::filesystem::path(PELORUS_SOURCE_DIR) / "../shared/data") /
+      "homography/boat";
+  const cv::Mat first = cv::imread((boat / "img1.pgm").string(), cv::IMREAD_GRAYSCALE);
+  if (first.empty()) {
+    std::fprintf(stderr, "%s: no images; set PELORUS_DATA_DIR\n", boat.c_str());
+    return 3;
+  }
+  for (int i = 2; i <= 6; ++i) {
+    const std::string n = std::to_string(i);
+    const cv::Mat other = cv::imread((boat / ("img" + n + ".pgm")).string(), cv::IMREAD_GRAYSCALE);
+    Eigen::Matrix3d H;
+    std::ifstream in(boat / ("H1to" + n + "p"));
+    for (int k = 0; k < 9; ++k) in >> H(k / 3, k % 3);
+    compare("boat 1-" + n, first, other, H, count);
+  }
+  const struct {
+    const char* name;
+    double angle, zoom;
+  } kRendered[] = {{"shift 0.4", 0, 1}, {"rotation 5", 5, 1}, {"rotation 30", 30, 1}, {"zoom 0.8", 0, 0.8}};
+  for (const auto& r : kRendered) {
+    Eigen::Matrix3d H = similarity(r.angle, r.zoom, first.cols / 2.0, first.rows / 2.0);
+    H(0, 2) += 0.4;
+    H(1, 2) -= 0.3;
+    const cv::Mat Hcv = (cv::Mat_<double>(3, 3) << H(0, 0), H(0, 1), H(0, 2), H(1, 0), H(1, 1), H(1, 2), 0, 0, 1);
+    cv::Mat warped;
+    cv::Mat noise(first.size(), CV_16S);
+    cv::warpPerspective(first, warped, Hcv, first.size(), cv::INTER_CUBIC, cv::BORDER_REFLECT);
+    cv::RNG rng(1);
+    rng.fill(noise, cv::RNG::NORMAL, 0, 2);
+    cv::Mat sum;
+    warped.convertTo(sum, CV_16S);
+    sum += noise;
+    sum.convertTo(warped, CV_8U);
+    compare(r.name, first, warped, H, count);
+  }
+  return 0;
+}
