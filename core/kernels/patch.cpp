@@ -203,5 +203,11 @@ PatchSums compare_patch(const ImageView& image, float u, float v, const PatchTem
   return HWY_DYNAMIC_DISPATCH(compare_patch)(image, u, v, patch);
 }
 
+PatchFit fit_of(const PatchTemplate& patch, const PatchSums& sums) {
+  const float spread = sums.square - sums.sum * sums.sum / patch.count;
+  if (!(spread > kMinPatchContrast * patch.count && patch.energy > 0)) return {};
+  return {spread, sums.value / std::sqrt(patch.energy * spread)};
+}
+
 }  // namespace pelorus
 #endif

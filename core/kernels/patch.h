@@ -61,6 +61,35 @@ void normalise(PatchTemplate& patch);
 // Compares with the image patch whose first pixel lies at (u, v).
 [[nodiscard]] PatchSums compare_patch(const ImageView& image, float u, float v, const PatchTemplate& patch);
 
+// How the image of a slanted surface shears and stretches along the row from one camera to the other: images of the
+// change per slope du/dx and du/dy of the patch, about its centre, orthogonal to the constant and to the value. Along
+// with gradient_u they form the normal equations of (shift, du/dx, du/dy).
+struct PatchSlant {
+  alignas(64) PatchRows slope_x;
+  alignas(64) PatchRows slope_y;
+  // Upper triangle of the 3x3 matrix of sums of products: (uu, ux, uy, xx, xy, yy).
+  std::array<float, 6> structure{};
+};
+// Of a normalised template.
+void prepare_slant(const PatchTemplate& patch, PatchSlant& slant);
+
+struct SlantSums {
+  PatchSums plain;
+  float slope_x = 0;
+  float slope_y = 0;
+};
+// compare_patch() with the two sums of the slant added. The plain sums may differ from compare_patch's in rounding.
+[[nodiscard]] SlantSums compare_slanted_patch(const ImageView& image, float u, float v, const PatchTemplate& patch,
+                                              const PatchSlant& slant);
+
+// What the sums say about the likeness of patch and template.
+struct PatchFit {
+  float spread = 0;  // sum of squares of the image patch about its mean; 0 when it shows nothing
+  float ncc = 0;     // normalised correlation
+};
+inline constexpr float kMinPatchContrast = 0.05F;  // variance below which a patch shows nothing, grey levels^2
+[[nodiscard]] PatchFit fit_of(const PatchTemplate& patch, const PatchSums& sums);
+
 namespace reference {
 void sample_patch(const ImageView& image, float u, float v, PatchTemplate& patch);
 void sample_warped_patch(const ImageView& image, float u, float v, const std::array<float, 4>& A, PatchTemplate& patch);
