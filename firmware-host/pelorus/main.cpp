@@ -5,8 +5,11 @@
 #include <exception>
 #include <vector>
 
+#include "firmware-host/pelorus/ablate.h"
 #include "firmware-host/pelorus/calib.h"
 #include "firmware-host/pelorus/command.h"
+#include "firmware-host/pelorus/demo.h"
+#include "firmware-host/pelorus/eval.h"
 #include "firmware-host/pelorus/replay.h"
 #include "firmware-host/pelorus/synth.h"
 
@@ -18,7 +21,10 @@ int run_tool(int argc, char** argv) {
   app.require_subcommand(1);
   std::vector<pelorus::Verb> verbs;
   verbs.push_back(pelorus::add_calib(app));
+  verbs.push_back(pelorus::add_demo(app));
   verbs.push_back(pelorus::add_replay(app));
+  verbs.push_back(pelorus::add_eval(app));
+  verbs.push_back(pelorus::add_ablate(app));
   verbs.push_back(pelorus::add_synth(app));
   CLI11_PARSE(app, argc, argv);
   for (const pelorus::Verb& verb : verbs) {

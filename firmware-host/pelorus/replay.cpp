@@ -1,10 +1,12 @@
 #include "firmware-host/pelorus/replay.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "firmware-host/pelorus/progress_bar.h"
 #include "firmware-host/pelorus/replay_interrupt.h"
 #include "firmware-host/pelorus/replay_run.h"
 #include "firmware-host/pelorus/replay_source.h"
@@ -44,7 +46,12 @@ Result<int> run_verb(const ReplayArguments& arguments) {
   options.overlay_every = arguments.overlay ? arguments.overlay_every : 0;
   options.stop = ReplayInterrupt::requested;
   const ReplayInterrupt interrupt;
+  const std::size_t all = source.value()->pair_count();
+  ProgressBar bar("replaying", arguments.frames > 0 ? std::min(all, static_cast<std::size_t>(arguments.frames)) : all,
+                  "pairs");
+  options.progress = [&bar](std::uint64_t done, std::uint64_t) { bar.update(done); };
   Result<ReplaySummary> summary = run_replay(*source.value(), options);
+  bar.clear();
   if (!summary) return summary.error();
   std::printf("%sresults  %s\n", to_text(summary.value()).c_str(), arguments.out.c_str());
   if (summary.value().failure) return *summary.value().failure;

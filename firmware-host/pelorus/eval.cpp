@@ -1,0 +1,58 @@
+#include "firmware-host/pelorus/eval.h"
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "firmware-host/pelorus/eval_json.h"
+#include "firmware-host/pelorus/eval_run.h"
+#include "firmware-host/pelorus/eval_table.h"
+
+namespace pelorus {
+namespace {
+
+struct EvalArguments {
+  std::string dataset;
+  std::string out;
+  std::string calibration;
+  bool json = false;
+  EvaluationConfig config;
+};
+
+Result<int> run_verb(const EvalArguments& arguments) {
+  const Result<RunEvaluation> run =
+      evaluate_run(arguments.dataset, arguments.calibration, arguments.out, arguments.config);
+  if (!run) return run.error();
+  const std::string text = arguments.json ? to_json(run.value()) + "\n" : to_table(run.value());
+  std::fputs(text.c_str(), stdout);
+  if (!run.value().has_truth) {
+    return Error{ErrorCode::bad_input, arguments.dataset,
+                 "the data set holds no truth: only the run's own facts are shown",
+                 "EuRoC: mav0/state_groundtruth_estimate0/data.csv; KITTI: poses.txt or poses_cam0_from_oxts.txt"};
+  }
+  if (!run.value().evaluation.camera) {
+    return Error{ErrorCode::bad_input, arguments.out, "fewer than two poses have truth of the same time",
+                 "check that the run is one of this data set"};
+  }
+  return 0;
+}
+
+}  // namespace
+
+Verb add_eval(CLI::App& app) {
+  auto arguments = std::make_shared<EvalArguments>();
+  CLI::App* parser = app.add_subcommand("eval", "Error tables of a run against the truth of its data set");
+  parser->add_option("DATASET", arguments->dataset, "The data set the run was made from")->required();
+  parser->add_option("OUT", arguments->out, "The output folder of `pelorus replay`")->required();
+  parser->add_option("--calib", arguments->calibration, "The calibration file given to replay, if one was");
+  parser->add_flag("--json", arguments->json, "JSON instead of a table: SI units, radians");
+  parser
+      ->add_option("--gate-m", arguments->config.association.centre_gate_m,
+                   "How far an object's points may lie from a body's centre to be that body")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  parser->footer("Exit codes: 0 evaluated, 2 usage, 3 bad input or no truth, 4 calibration.");
+  return {parser, [arguments] { return run_verb(*arguments); }};
+}
+
+}  // namespace pelorus

@@ -1,0 +1,28 @@
+#pragma once
+// evaluate_run: the files of a run and the truth of its data set -> all metrics. What `eval`, `ablate` and `demo` print
+// comes from here. Thread-bound.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "core/base/result.h"
+#include "core/evaluation/evaluation.h"
+#include "firmware-host/pelorus/result_reader.h"
+
+namespace pelorus {
+
+struct RunEvaluation {
+  std::string dataset;
+  std::string folder;
+  Evaluation evaluation;  // without truth: the facts only
+  std::optional<StepTimes> step_times;
+  bool has_truth = false;
+  bool exact_truth = false;
+  std::string truth_origin;
+};
+
+[[nodiscard]] Result<RunEvaluation> evaluate_run(const std::string& dataset, const std::string& calibration_file,
+                                                 const std::filesystem::path& folder, const EvaluationConfig& config);
+
+}  // namespace pelorus

@@ -1,0 +1,186 @@
+#include "firmware-host/pelorus/eval_table.h"
+
+#include <array>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+#include <numbers>
+
+namespace pelorus {
+namespace {
+
+constexpr double kDegPerRad = 180.0 / std::numbers::pi;
+constexpr double kCmPerM = 100.0;
+
+std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
+std::string format(const char* pattern, ...) {
+  std::array<char, 256> text{};
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text.data(), text.size(), pattern, arguments);
+  va_end(arguments);
+  return text.data();
+}
+
+// method.md, section 10.
+struct Goal {
+  std::string text;  // empty = none
+  bool met = false;
+};
+Goal below(double value, double limit, const char* text) { return {text, value < limit}; }
+Goal above(double value, double limit, const char* text) { return {text, value > limit}; }
+
+std::string line(const std::string& name, const std::string& value, const Goal& goal = {},
+                 const std::string& paper = "") {
+  const char* verdict = goal.text.empty() ? "" : goal.met ? "ok" : "MISSED";
+  std::string text =
+      format("  %-34s %20s   %-10s %-8s %s", name.c_str(), value.c_str(), goal.text.c_str(), verdict, paper.c_str());
+  text.erase(text.find_last_not_of(' ') + 1);
+  return text + "\n";
+}
+
+std::string heading(const std::string& name) {
+  return "\n" + format("%-36s %20s   %-10s %-8s %s\n", name.c_str(), "value", "goal", "", "paper");
+}
+
+std::string facts_text(const RunEvaluation& run) {
+  const RunFacts& facts = run.evaluation.facts;
+  std::string text = "Run    " + run.folder + "\n";
+  text += format("       %zu frames, %zu with a pose, %zu missing, resets %d;", facts.frames, facts.frames_with_pose,
+                 facts.frames_missed, facts.resets);
+  for (std::size_t i = 0; i < facts.states.size(); ++i) {
+    if (facts.states[i] > 0) text += format(" %s %zu", to_text(static_cast<VisionState>(i)), facts.states[i]);
+  }
+  text += format("\n       %zu objects confirmed", facts.confirmed.size());
+  if (run.step_times) {
+    text += format("; step median %.1f ms, p99 %.1f ms", run.step_times->median_ms, run.step_times->p99_ms);
+  }
+  return text + "\nTruth  " + (run.has_truth ? run.truth_origin : "none") + "\n";
+}
+
+// Lengths where they read best: centimetres for dives, metres for roads.
+std::string length(double value_m, bool fine) {
+  return fine ? format("%.4f cm", value_m * kCmPerM) : format("%.4f m", value_m);
+}
+std::string angle(double value_rad) { return format("%.4f deg", value_rad * kDegPerRad); }
+
+std::string consistency_line(const std::string& name, const Consistency& nees, bool judged) {
+  if (nees.count == 0) return line(name, "no covariance");
+  return line(name, format("%.2f (median %.2f)", nees.mean_nees, nees.median_nees),
+              judged ? Goal{format("%.1f-%.1f", nees.band_low, nees.band_high), nees.is_inside_band()} : Goal{});
+}
+
+constexpr double kStandstill_m = 0.5;
+
+std::string camera_text(const RunEvaluation& run) {
+  const TrajectoryError& camera = *run.evaluation.camera;
+  const bool fine = run.exact_truth || camera.path_length_m < kStandstill_m;
+  const bool dive = run.exact_truth;
+  std::string text = heading(format("Camera, %.2f m, %zu poses", camera.path_length_m, camera.poses));
+  text += line("step error, mean", length(camera.step_m.mean, fine),
+               dive ? below(camera.step_m.mean, 4e-5, "< 0.004 cm") : Goal{}, dive ? "0.01 cm" : "");
+  text += line("step error, RMSE (RPE)", length(camera.step_m.rmse, fine));
+  text += line("step rotation, mean", angle(camera.step_rad.mean));
+  text += line("step rotation, RMSE (RPE)", angle(camera.step_rad.rmse));
+  text += line("absolute error, mean", length(camera.absolute_m.mean, fine),
+               dive ? below(camera.absolute_m.mean, 4e-4, "< 0.04 cm") : Goal{}, dive ? "0.13 cm" : "");
+  text += line("absolute error, max", length(camera.absolute_m.max, fine));
+  text += line("absolute rotation, mean / max",
+               format("%.4f / %.4f deg", camera.absolute_rad.mean * kDegPerRad, camera.absolute_rad.max * kDegPerRad));
+  text += line("ATE, RMSE after alignment", length(camera.ate_rmse_m, fine));
+  text += line("final drift", length(camera.final_drift_m, fine));
+  if (camera.path_length_m >= kStandstill_m) {
+    text += line("final drift over the path", format("%.3f %%", camera.final_drift_percent),
+                 dive ? Goal{} : below(camera.final_drift_percent, 1.0, "< 1 %"));
+  }
+  if (camera.kitti) {
+    text += line("KITTI drift, 100-800 m", format("%.3f %%", camera.kitti->translation_percent));
+    text += line("KITTI rotation, 100-800 m", format("%.4f deg/100m", camera.kitti->rotation_deg_per_100m));
+  }
+  if (run.evaluation.camera_consistency) {
+    text += consistency_line("NEES of the step", *run.evaluation.camera_consistency, dive);
+  }
+  return text;
+}
+
+std::string body_ids(const BodyScore& score) {
+  std::string ids;
+  for (const BodyId id : score.ids) ids += (ids.empty() ? "" : ",") + std::to_string(id.value);
+  return ids.empty() ? "-" : ids;
+}
+
+std::string body_line(const BodyEvaluation& body) {
+  const MotionError& motion = body.motion;
+  const auto number = [](const ErrorStatistics& statistics, double value, const char* pattern) {
+    if (statistics.count == 0) return std::string("-");
+    std::array<char, 32> digits{};
+    std::snprintf(digits.data(), digits.size(), pattern, value);
+    return std::string(digits.data());
+  };
+  const std::string detected =
+      body.score.time_to_detection_s ? format("%.2f s", *body.score.time_to_detection_s) : "never";
+  const std::string coverage = body.score.frames_on_show == 0 ? "-" : format("%.1f %%", 100 * body.score.coverage());
+  const auto cm = [&](const ErrorStatistics& s, double v) { return number(s, v * kCmPerM, "%.3f"); };
+  const auto deg = [&](const ErrorStatistics& s, double v) { return number(s, v * kDegPerRad, "%.3f"); };
+  std::string text =
+      format("  %-13s %7s %7s   %7s %7s   %7s %7s   %8s %9d %9s  %-8s", body.name.c_str(),
+             cm(motion.step_m, motion.step_m.median).c_str(), deg(motion.step_rad, motion.step_rad.median).c_str(),
+             cm(motion.since_birth_m, motion.since_birth_m.mean).c_str(),
+             deg(motion.since_birth_rad, motion.since_birth_rad.mean).c_str(),
+             cm(motion.since_birth_m, motion.since_birth_m.max).c_str(),
+             deg(motion.since_birth_rad, motion.since_birth_rad.max).c_str(), coverage.c_str(),
+             body.score.identity_switches, detected.c_str(), body_ids(body.score).c_str());
+  if (body.consistency.count > 0) text += format(" %6.2f", body.consistency.mean_nees);
+  return text + "\n";
+}
+
+std::string bodies_text(const RunEvaluation& run) {
+  if (run.evaluation.bodies.empty()) return "";
+  std::string text = "\nMoving bodies     step motion      since birth, mean  since birth, max\n";
+  text += "                  median (ME)                                           id\n";
+  text +=
+      "                    cm     deg        cm     deg        cm     deg   coverage  switches  detected  ids        "
+      "NEES\n";
+  if (run.exact_truth) {
+    text +=
+        "  goal            < 0.05  < 0.05     < 0.5   < 0.3                     > 95 %         0               one"
+        "        6\n";
+  }
+  for (const BodyEvaluation& body : run.evaluation.bodies) text += body_line(body);
+  return text;
+}
+
+std::string tracking_text(const RunEvaluation& run) {
+  const TrackingScore& tracking = run.evaluation.tracking;
+  std::string text = heading("Objects as a whole");
+  if (!run.evaluation.bodies.empty() || !tracking.false_objects.empty()) {
+    text += line("right number of motions", format("%.1f %%", 100 * tracking.right_count_share),
+                 above(tracking.right_count_share, 0.97, "> 97 %"));
+    text += line("  1 s after each body's appearing", format("%.1f %%", 100 * tracking.right_count_settled_share));
+  }
+  text += line("false objects",
+               format("%zu (%.1f per 1000)", tracking.false_objects.size(), tracking.false_per_1000_frames),
+               {"0", tracking.false_objects.empty()});
+  if (!run.evaluation.bodies.empty()) {
+    text += consistency_line("NEES of object motion", run.evaluation.object_consistency, run.exact_truth);
+  }
+  for (const FalseObject& object : tracking.false_objects) {
+    const std::string where = !object.resting_body.empty() ? "on " + object.resting_body + ", at rest"
+                              : object.duplicate           ? "second object on a body that has one"
+                                                           : "on the background";
+    text += format("    object %d, confirmed in %zu frames: %s\n", object.id.value, object.frames, where.c_str());
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string to_table(const RunEvaluation& run) {
+  std::string text = facts_text(run);
+  if (!run.has_truth) return text;
+  if (run.evaluation.camera) text += camera_text(run);
+  if (run.evaluation.knows_bodies) text += bodies_text(run) + tracking_text(run);
+  return text;
+}
+
+}  // namespace pelorus

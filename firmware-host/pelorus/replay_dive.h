@@ -1,0 +1,21 @@
+#pragma once
+// Dives for the verbs that need more than one run over the same frames: a scene is rendered once, as an EuRoC ASL
+// folder with its truth, and replayed from there. Thread-bound.
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "core/base/result.h"
+
+namespace pelorus {
+
+// True for a scene file or a shipped scene's name, false for a data-set folder.
+[[nodiscard]] bool is_scene(const std::string& dataset);
+
+// Renders into `folder`, replacing what is there; max_frames 0 = the scene's. Shows a progress bar. False: interrupted
+// (ReplayInterrupt), nothing left behind.
+[[nodiscard]] Result<bool> render_dive(const std::string& scene, std::uint64_t max_frames,
+                                       const std::filesystem::path& folder);
+
+}  // namespace pelorus

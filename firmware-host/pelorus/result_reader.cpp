@@ -1,0 +1,197 @@
+#include "firmware-host/pelorus/result_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/pelorus/result_reader_table.h"
+
+namespace pelorus {
+namespace {
+
+namespace fs = std::filesystem;
+
+Error missing_column(const fs::path& file, const std::string& name) {
+  return {ErrorCode::bad_input, file.string() + ":1", "column '" + name + "' is missing",
+          "the file is not one that `pelorus replay` writes"};
+}
+
+template <class Enum, std::size_t N>
+std::optional<Enum> from_text(const std::string& text, const std::array<Enum, N>& all) {
+  for (const Enum value : all)
+    if (text == to_text(value)) return value;
+  return std::nullopt;
+}
+
+constexpr std::array<VisionState, 7> kStates = {
+    VisionState::init,         VisionState::tracking,          VisionState::degraded, VisionState::lost,
+    VisionState::camera_fault, VisionState::calibration_fault, VisionState::standby};
+constexpr std::array<ObjectPhase, 4> kPhases = {ObjectPhase::tentative, ObjectPhase::confirmed, ObjectPhase::coasting,
+                                                ObjectPhase::ended};
+
+// 21 columns of the upper triangle, from `column` on.
+Matrix6d covariance(TextTable& table, std::size_t row, std::size_t column) {
+  Matrix6d cov;
+  for (int r = 0; r < 6; ++r) {
+    for (int c = r; c < 6; ++c) cov(r, c) = cov(c, r) = table.number(row, column++);
+  }
+  return cov;
+}
+
+Result<EstimatedRun> read_frames(const fs::path& file) {
+  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+  if (!read) return read.error();
+  TextTable& table = read.value();
+  for (const char* name : {"seq", "timestamp_ns", "state"}) {
+    if (!table.find(name)) return missing_column(file, name);
+  }
+  const auto step = table.find("step_x");
+  const auto step_cov = table.find("step_cov_00");
+  EstimatedRun run;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    EstimatedFrame frame;
+    frame.seq = static_cast<std::uint64_t>(table.integer(row, *table.find("seq")));
+    frame.capture_time = Timestamp{table.integer(row, *table.find("timestamp_ns"))};
+    const auto state = from_text(table.text(row, *table.find("state")), kStates);
+    if (!state) table.complain(row, "'" + table.text(row, *table.find("state")) + "' is no state");
+    frame.state = state.value_or(VisionState::init);
+    if (step) frame.T_curr_prev = table.rigid(row, *step, true);
+    if (step_cov) frame.cov_T_curr_prev = covariance(table, row, *step_cov);
+    if (const auto column = table.find("world_confidence")) frame.world_confidence = table.number(row, *column);
+    const auto count = [&](const char* name) {
+      const auto column = table.find(name);
+      return column ? static_cast<int>(table.integer(row, *column)) : 0;
+    };
+    frame.reset_counter = count("reset_counter");
+    frame.frames_missed = count("frames_missed");
+    if (!run.empty() && frame.capture_time <= run.back().capture_time) table.complain(row, "time does not advance");
+    if (table.problem()) return *table.problem();
+    run.push_back(std::move(frame));
+  }
+  return run;
+}
+
+// Poses of camera.tum into the run; a run without frames.csv consists of them.
+Result<Ok> read_camera(const fs::path& file, bool has_frames, EstimatedRun& run) {
+  Result<TextTable> read = TextTable::read(file, TableHeader::none);
+  if (!read) return read.error();
+  TextTable& table = read.value();
+  if (table.size() > 0 && table.columns() != 8) {
+    return Error{ErrorCode::bad_input, file.string(), "a TUM trajectory has 8 columns", "see `pelorus replay --help`"};
+  }
+  std::map<Timestamp, std::size_t> frame_at;
+  for (std::size_t i = 0; i < run.size(); ++i) frame_at[run[i].capture_time] = i;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const Timestamp time = table.time_of_seconds(row, 0);
+    const Rigid3 T_world_cam = table.rigid(row, 1, false);
+    if (!has_frames) {
+      EstimatedFrame frame;
+      frame.seq = row;
+      frame.capture_time = time;
+      frame.state = VisionState::tracking;
+      frame.T_world_cam = T_world_cam;
+      if (!run.empty() && time <= run.back().capture_time) table.complain(row, "time does not advance");
+      run.push_back(std::move(frame));
+    } else if (const auto found = frame_at.find(time); found != frame_at.end()) {
+      run[found->second].T_world_cam = T_world_cam;
+    } else {
+      table.complain(row, "no frame of frames.csv has this time");
+    }
+    if (table.problem()) return *table.problem();
+  }
+  return Ok{};
+}
+
+EstimatedObject read_object(TextTable& table, std::size_t row) {
+  EstimatedObject object;
+  object.id = BodyId{static_cast<std::int32_t>(table.integer(row, *table.find("object_id")))};
+  const auto phase = from_text(table.text(row, *table.find("state")), kPhases);
+  if (!phase) table.complain(row, "'" + table.text(row, *table.find("state")) + "' is no state of an object");
+  object.phase = phase.value_or(ObjectPhase::tentative);
+  object.T_world_obj = table.rigid(row, *table.find("p_x"), true);
+  object.M_world = table.rigid(row, *table.find("m_x"), true);
+  object.points = static_cast<int>(table.integer(row, *table.find("points")));
+  object.centroid_world = object.T_world_obj.translation();  // a file without c_x: the best there is
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto at = static_cast<Eigen::Index>(i);
+    if (const auto c = table.find("c_x")) object.centroid_world(at) = table.number(row, *c + i);
+    if (const auto e = table.find("e_x")) object.extent_m(at) = table.number(row, *e + i);
+  }
+  if (const auto cov = table.find("m_cov_00")) {
+    object.cov_M_centroid = covariance(table, row, *cov);
+  } else {
+    const double sigma_t_m = table.number(row, *table.find("sigma_t_m"));
+    const double sigma_r_rad = table.number(row, *table.find("sigma_r_rad"));
+    object.cov_M_centroid.diagonal().head<3>().setConstant(sigma_t_m * sigma_t_m);
+    object.cov_M_centroid.diagonal().tail<3>().setConstant(sigma_r_rad * sigma_r_rad);
+  }
+  return object;
+}
+
+Result<Ok> read_objects(const fs::path& file, EstimatedRun& run) {
+  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+  if (!read) return read.error();
+  TextTable& table = read.value();
+  for (const char* name :
+       {"timestamp_ns", "object_id", "state", "p_x", "q_w", "m_x", "mq_w", "points", "sigma_t_m", "sigma_r_rad"}) {
+    if (!table.find(name)) return missing_column(file, name);
+  }
+  std::map<Timestamp, std::size_t> frame_at;
+  for (std::size_t i = 0; i < run.size(); ++i) frame_at[run[i].capture_time] = i;
+  for (std::size_t row = 0; row < table.size(); ++row) {
+    const auto found = frame_at.find(Timestamp{table.integer(row, *table.find("timestamp_ns"))});
+    if (found == frame_at.end()) table.complain(row, "no frame has this time");
+    const EstimatedObject object = read_object(table, row);
+    if (table.problem()) return *table.problem();
+    run[found->second].objects.push_back(object);
+  }
+  return Ok{};
+}
+
+}  // namespace
+
+Result<EstimatedRun> read_run(const fs::path& folder) {
+  const ResultPaths paths(folder);
+  std::error_code ignored;
+  if (!fs::is_regular_file(paths.camera, ignored)) {
+    return Error{ErrorCode::bad_input, folder.string(), "no camera.tum here", "give the --out folder of a replay"};
+  }
+  EstimatedRun run;
+  const bool has_frames = fs::is_regular_file(paths.frames, ignored);
+  if (has_frames) {
+    Result<EstimatedRun> frames = read_frames(paths.frames);
+    if (!frames) return frames.error();
+    run = std::move(frames.value());
+  }
+  if (Result<Ok> read = read_camera(paths.camera, has_frames, run); !read) return read.error();
+  if (run.empty()) {
+    return Error{ErrorCode::bad_input, folder.string(), "the run holds no frame", "repeat the replay"};
+  }
+  if (fs::is_regular_file(paths.objects, ignored)) {
+    if (Result<Ok> read = read_objects(paths.objects, run); !read) return read.error();
+  }
+  return run;
+}
+
+Result<std::optional<StepTimes>> read_step_times(const fs::path& folder) {
+  const fs::path file = ResultPaths(folder).timing;
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return std::optional<StepTimes>();
+  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+  if (!read) return read.error();
+  TextTable& table = read.value();
+  const auto column = table.find("step_us");
+  if (!column) return missing_column(file, "step_us");
+  std::vector<double> times_ms;
+  for (std::size_t row = 0; row < table.size(); ++row) times_ms.push_back(table.number(row, *column) * 1e-3);
+  if (table.problem()) return *table.problem();
+  if (times_ms.empty()) return std::optional<StepTimes>();
+  std::sort(times_ms.begin(), times_ms.end());
+  const auto at = [&](double share) {
+    return times_ms[static_cast<std::size_t>(share * static_cast<double>(times_ms.size() - 1) + 0.5)];
+  };
+  return std::optional<StepTimes>(StepTimes{at(0.5), at(0.99)});
+}
+
+}  // namespace pelorus
