@@ -16,7 +16,7 @@ constexpr float kLampReferenceM = 3.0F;
 
 float decay(float x) {
   const float scaled = std::max(x, -80.0F) * 1.44269504F;
-  const int whole = lattice::floor_to_int(scaled);
+  const int whole = lattice::floor_to_int(scaled + 0.5F);
   const float y = (scaled - static_cast<float>(whole)) * 0.693147181F;
   const float series =
       1.0F + y * (1.0F + y * (0.5F + y * (1.0F / 6 + y * (1.0F / 24 + y * (1.0F / 120 + y * (1.0F / 720))))));
@@ -29,6 +29,7 @@ Lighting::Lighting(const Scene& scene, double t_s, const Rigid3& T_sea_cam, cons
       light_(scene.light),
       daylight_(static_cast<float>(scene.light.daylight)),
       time_s_(static_cast<float>(t_s)),
+      cos_half_beam_(static_cast<float>(std::cos(scene.light.beam_rad))),
       caustics_seed_(SeededHash(scene.seed, Purpose::caustics, 0).bits32()),
       v_sea_sun_(Eigen::Vector3f(0.35F, 0.25F, -0.9F).normalized()),
       p_sea_lamp_((T_sea_cam * Eigen::Vector3d(0.45, -0.35, 0)).cast<float>()),
@@ -36,8 +37,7 @@ Lighting::Lighting(const Scene& scene, double t_s, const Rigid3& T_sea_cam, cons
 
 float Lighting::lamp_at(float cos_axis, float distance_m) const {
   // cos^n that falls to a half at beam_rad; inverse square law; attenuation from the lamp.
-  const auto half_cos = static_cast<float>(std::cos(light_.beam_rad));
-  const float off_axis = (1.0F - cos_axis) / (1.0F - half_cos);
+  const float off_axis = (1.0F - cos_axis) / (1.0F - cos_half_beam_);
   const float beam = decay(-0.6931F * off_axis);
   const float near_m = std::max(distance_m, 0.3F);
   const float spread = kLampReferenceM * kLampReferenceM / (near_m * near_m);

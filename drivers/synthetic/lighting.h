@@ -35,6 +35,7 @@ class Lighting {
   Light light_;
   float daylight_;
   float time_s_;
+  float cos_half_beam_;
   std::uint32_t caustics_seed_;
   Eigen::Vector3f v_sea_sun_;   // towards the light
   Eigen::Vector3f p_sea_lamp_;  // on the vehicle, beside and above the camera

@@ -16,7 +16,7 @@ std::string shown(double value) {
 }  // namespace
 
 void Problems::add(const YAML::Mark& mark, const std::string& what) {
-  lines_.push_back(file_ + ":" + std::to_string(mark.line + 1) + ": " + what);
+  lines_.push_back(file_ + ":" + std::to_string(std::max(0, mark.line) + 1) + ": " + what);
 }
 
 std::string Problems::text() const {
