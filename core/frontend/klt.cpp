@@ -13,50 +13,80 @@ using namespace klt;
 
 constexpr float kCoarseEpsilonPx = 0.03F;  // a coarse level only has to bring the next one into its basin
 
+static const int E1 = std::getenv("E1") ? std::atoi(std::getenv("E1")) : 0;
 void keep(const LevelSearch& search, float scale, KltTask& task) {
   task.ncc = search.ncc;
   task.residual_rms = search.residual_rms;
   for (std::size_t i = 0; i < 3; ++i) task.structure[i] = search.structure[i] * scale * scale;
 }
 
-void track_task(const KltConfig& config, const ImagePyramid& from, const ImagePyramid& to, KltSearch direction,
-                int coarsest, KltTask& task) {
+// A task on its way down the levels. Places in full-resolution pixels.
+struct Descent {
+  const KltConfig& config;
+  const ImagePyramid& from;
+  const ImagePyramid& to;
+  KltSearch direction;
   TaskWarp warp;
-  task.outcome = KltOutcome::diverged;
-  if (!invert(task.warp, warp)) return;
-  Place place{task.u_to_px, task.v_to_px};  // full resolution; moves only where a level succeeded
+  Place predicted;
+  Place place;  // moves only where a level succeeded
+  Place hint;   // moves also to a doubtful answer that bettered its start
   bool found = false;
-  for (int level = coarsest; level >= 0; --level) {
+
+  bool track(int level, Place start, KltTask& task) {
     const float scale = std::ldexp(1.0F, -level);
     LevelSearch search{from.level(level),
                        to.level(level),
                        {task.u_from_px * scale, task.v_from_px * scale},
-                       {place.u_px * scale, place.v_px * scale}};
+                       {start.u_px * scale, start.v_px * scale}};
+    search.coarser_agreed = found && start == place;
     const float epsilon = level == 0 ? config.epsilon_px : std::max(config.epsilon_px, kCoarseEpsilonPx);
     const KltOutcome outcome = track_level(config, warp, direction, epsilon, search);
+    const Place end{search.place.u_px / scale, search.place.v_px / scale};
+    if (outcome == KltOutcome::ok || !found) {
+      task.level = level;
+      task.outcome = outcome;
+      keep(search, scale, task);
+    }
     if (outcome == KltOutcome::ok) {
       found = true;
-      place = {search.place.u_px / scale, search.place.v_px / scale};
-      task.level = level;
-      keep(search, scale, task);
-    } else if (!found) {
-      task.level = level;
-      keep(search, scale, task);
-      task.outcome = outcome;
+      place = hint = end;
+    } else if (search.ncc > search.start_ncc) {
+      hint = end;
+    }
+    return outcome == KltOutcome::ok;
+  }
+
+  // A coarse answer may belong to another surface in its wide window: then the earlier ones get their chance.
+  void descend(int level, KltTask& task) {
+    const std::array<Place, 3> starts{hint, place, predicted};
+    for (auto start = starts.begin(); start != starts.end(); ++start) {
+      const bool tried = std::find(starts.begin(), start, *start) != start;
+      if (!tried && track(level, *start, task)) return;
     }
   }
-  if (!found) return;
-  if (direction == KltSearch::slanted_row) {
-    LevelSearch search{from.level(0), to.level(0), {task.u_from_px, task.v_from_px}, place};
-    if (refine_slant(config, search, task.warp) == KltOutcome::ok) {
-      place = search.place;
-      task.level = 0;
-      keep(search, 1.0F, task);
-    }
-  }
+};
+
+void refine_with_slant(Descent& descent, KltTask& task) {
+  LevelSearch search{descent.from.level(0), descent.to.level(0), {task.u_from_px, task.v_from_px}, descent.place};
+  if (refine_slant(descent.config, search, task.warp) != KltOutcome::ok) return;
+  descent.place = search.place;
+  task.level = 0;
+  keep(search, 1.0F, task);
+}
+
+void track_task(const KltConfig& config, const ImagePyramid& from, const ImagePyramid& to, KltSearch direction,
+                int coarsest, KltTask& task) {
+  task.outcome = KltOutcome::diverged;
+  TaskWarp warp;
+  if (!invert(task.warp, warp)) return;
+  const Place predicted{task.u_to_px, task.v_to_px};
+  Descent descent{config, from, to, direction, warp, predicted, predicted, predicted};
+  for (int level = coarsest; level >= 0; --level) descent.descend(level, task);
+  if (!descent.found) return;
+  if (direction == KltSearch::slanted_row) refine_with_slant(descent, task);
   task.outcome = KltOutcome::ok;
-  task.u_to_px = place.u_px;
-  task.v_to_px = place.v_px;
+  task.u_to_px = descent.place.u_px;
+  task.v_to_px = descent.place.v_px;
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ struct KltConfig {
   int max_iterations = 12;
   float epsilon_px = 0.005F;  // last step at full resolution; coarser levels stop earlier
   float min_ncc = 0.85F;
+  float confirmed_ncc = 0.75F;  // where a coarser level already found the same place
   float min_eigenvalue = 0.3F;  // of the structure tensor per pixel, grey levels^2 / px^2
 };
 

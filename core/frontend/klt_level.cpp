@@ -8,8 +8,11 @@
 namespace pelorus::klt {
 namespace {
 
-constexpr float kMaxStepPx = 2.0F;    // per iteration, level pixels: the linearisation reaches no further
-constexpr float kSettledPx = 0.1F;    // last step accepted when the iterations run out
+constexpr float kMaxStepPx = 2.0F;  // per iteration, level pixels: the linearisation reaches no further
+constexpr float kSettledPx = 0.1F;  // last step accepted when the iterations run out
+constexpr float kMaxDriftPerHalfWindow = 1.5F;
+constexpr float kConfirmedReachPx =
+    3.0F;                             // a coarser level is right to about half a pixel of its own and its scale error
 constexpr float kMinCoverage = 0.5F;  // share of the window that both images must show
 
 float least_eigenvalue(float uu, float uv, float vv) {
@@ -36,9 +39,12 @@ bool has_texture(const PatchTemplate& patch, KltSearch search, float min_eigenva
   return eigenvalue >= min_eigenvalue * patch.count && patch.energy > kMinPatchContrast * patch.count;
 }
 
+float distance(Place a, Place b) { return std::hypot(a.u_px - b.u_px, a.v_px - b.v_px); }
+
 KltOutcome iterate(const KltConfig& config, const PatchTemplate& patch, KltSearch direction, float epsilon_px,
                    LevelSearch& search) {
   const auto half = static_cast<float>(config.half_window_px);
+  const float reach = kMaxDriftPerHalfWindow * half;
   const Place start = search.place;
   float last_step = kMaxStepPx;
   PatchFit fit;
@@ -46,6 +52,7 @@ KltOutcome iterate(const KltConfig& config, const PatchTemplate& patch, KltSearc
     const PatchSums sums = compare_patch(search.to, search.place.u_px - half, search.place.v_px - half, patch);
     fit = fit_of(patch, sums);
     if (fit.spread <= 0) return KltOutcome::low_correlation;
+    if (i == 0) search.start_ncc = fit.ncc;
     // Gain as ratio of contrasts: equals the fitted gain at the solution and stays tame far from it.
     Place step = newton_step(patch, sums, std::sqrt(fit.spread / patch.energy), direction);
     last_step = std::hypot(step.u_px, step.v_px);
@@ -53,11 +60,13 @@ KltOutcome iterate(const KltConfig& config, const PatchTemplate& patch, KltSearc
     search.place.u_px -= scale * step.u_px;
     search.place.v_px -= scale * step.v_px;
     if (!inside(search.to, search.place)) return KltOutcome::out_of_image;
-    if (std::hypot(search.place.u_px - start.u_px, search.place.v_px - start.v_px) > half) return KltOutcome::diverged;
+    if (distance(search.place, start) > reach) return KltOutcome::diverged;
   }
   judge(patch, fit, search);
   if (!(last_step <= std::max(epsilon_px, kSettledPx))) return KltOutcome::diverged;
-  return fit.ncc >= config.min_ncc ? KltOutcome::ok : KltOutcome::low_correlation;
+  const bool confirmed = search.coarser_agreed && distance(search.place, start) <= kConfirmedReachPx;
+  const float min_ncc = confirmed ? config.confirmed_ncc : config.min_ncc;
+  return fit.ncc >= min_ncc ? KltOutcome::ok : KltOutcome::low_correlation;
 }
 
 }  // namespace

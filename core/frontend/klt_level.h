@@ -14,6 +14,7 @@ inline constexpr float kSplineNoisePower = 0.23F;
 struct Place {
   float u_px = 0;
   float v_px = 0;
+  bool operator==(const Place&) const = default;
 };
 
 // Question and answer of a level.
@@ -22,6 +23,8 @@ struct LevelSearch {
   const ImageView& to;
   Place start_from;
   Place place;
+  bool coarser_agreed = false;  // the start is an accepted answer of a coarser level
+  float start_ncc = 0;
   float ncc = 0;
   float residual_rms = 0;            // referred to raw pixels
   std::array<float, 3> structure{};  // per pixel, of this level

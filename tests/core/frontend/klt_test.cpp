@@ -188,7 +188,7 @@ TEST(Klt, WhenFullResolutionFailsTheCoarserAnswerStands) {
     return TexturePlace{u - 2.5, v - 1.5};
   });
   KltConfig config;
-  config.min_ncc = 0.97F;
+  config.min_ncc = config.confirmed_ncc = 0.97F;
   std::vector<KltTask> tasks = grid(40);
   Klt(config).track(pyramid_of(a), pyramid_of(b), tasks, KltSearch::plane, 3);
   int fallen_back = 0;
