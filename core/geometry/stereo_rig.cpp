@@ -1,7 +1,5 @@
 #include "core/geometry/stereo_rig.h"
 
-#include <Eigen/LU>
-
 namespace pelorus {
 
 Eigen::Vector3d StereoRig::project(const Eigen::Vector3d& p_cam) const {
@@ -25,9 +23,21 @@ Eigen::Vector3d StereoRig::triangulate(const Eigen::Vector3d& z_px) const {
   return {(z_px.x() - cx_px) * z_m / f_px, (z_px.y() - cy_px) * z_m / f_px, z_m};
 }
 
+Eigen::Matrix3d StereoRig::triangulate_jacobian(const Eigen::Vector3d& p_cam) const {
+  // p = (b (u - cx) / d, b (v - cy) / d, f b / d) with disparity d = u_left - u_right = f b / z.
+  const double m_per_px = p_cam.z() / f_px;  // b / d
+  const double disparity_px = f_px * baseline_m / p_cam.z();
+  const Eigen::Vector3d per_disparity = -p_cam / disparity_px;  // dp/dd
+  Eigen::Matrix3d J = Eigen::Matrix3d::Zero();
+  J.col(0) = per_disparity;
+  J(0, 0) += m_per_px;
+  J(1, 1) = m_per_px;
+  J.col(2) = -per_disparity;
+  return J;
+}
+
 Eigen::Matrix3d StereoRig::triangulate_covariance(const Eigen::Vector3d& z_px, const Eigen::Matrix3d& cov_px2) const {
-  // triangulate inverts project, so its Jacobian is the inverse of project's.
-  const Eigen::Matrix3d J = project_jacobian(triangulate(z_px)).inverse();
+  const Eigen::Matrix3d J = triangulate_jacobian(triangulate(z_px));
   return J * cov_px2 * J.transpose();
 }
 

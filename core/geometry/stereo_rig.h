@@ -21,6 +21,8 @@ struct StereoRig {
   [[nodiscard]] Eigen::Matrix3d project_jacobian(const Eigen::Vector3d& p_cam) const;
   // Point of a measurement with positive disparity (u_left - u_right > 0).
   [[nodiscard]] Eigen::Vector3d triangulate(const Eigen::Vector3d& z_px) const;
+  // d(triangulate)/d(z_px), 3x3 [m/px], at the triangulated point: the inverse of project_jacobian, closed form.
+  [[nodiscard]] Eigen::Matrix3d triangulate_jacobian(const Eigen::Vector3d& p_cam) const;
   // Covariance of triangulate [m^2] for the pixel covariance of (u_left, v, u_right) [px^2].
   [[nodiscard]] Eigen::Matrix3d triangulate_covariance(const Eigen::Vector3d& z_px,
                                                        const Eigen::Matrix3d& cov_px2) const;

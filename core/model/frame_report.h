@@ -24,9 +24,9 @@ enum class Stage : std::uint8_t {
   partition,
   ego_motion,
   static_filters,
-  objects,
   static_window,
-  object_window,
+  objects,
+  refill,
   count
 };
 inline constexpr std::size_t kStageCount = static_cast<std::size_t>(Stage::count);

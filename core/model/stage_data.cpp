@@ -66,12 +66,12 @@ const char* to_text(Stage stage) {
       return "ego_motion";
     case Stage::static_filters:
       return "static_filters";
-    case Stage::objects:
-      return "objects";
     case Stage::static_window:
       return "static_window";
-    case Stage::object_window:
-      return "object_window";
+    case Stage::objects:
+      return "objects";
+    case Stage::refill:
+      return "refill";
     case Stage::count:
       break;
   }

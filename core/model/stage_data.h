@@ -31,14 +31,20 @@ struct StereoPoint {
   Eigen::Vector3d p_cam = Eigen::Vector3d::Zero();  // [m]
 };
 
+inline constexpr int kPastFrames = 4;  // with prev: the longest common history of 5 frames (method section 4)
+
 // A point seen in all four images of a step: prev left/right, curr left/right (paper 5.1, Fig. 2).
 struct PointPair {
   TrackId track;
   StereoPoint prev;
   StereoPoint curr;
   double sigma_px = 0.25;          // standard deviation of one pixel coordinate of this point
+  double match_error = 0;          // of the tracker: 1 - normalised correlation
   int age = 0;                     // frames since birth, >= 1
   BodyId previous_body = kNoBody;  // the body this track belonged to after the previous step
+  // Older measurements, past[0] = two frames back: a one-step change is weak evidence, a five-step change is not.
+  std::array<Eigen::Vector3d, kPastFrames> past;
+  int past_size = 0;
 };
 
 using PointIndex = std::int32_t;  // into the PointPairs of the step
@@ -50,6 +56,21 @@ struct Group {
   Rigid3 H_curr_prev = Rigid3::Identity();  // apparent motion: p_curr = H_curr_prev * p_prev
   Matrix6d cov_H = Matrix6d::Zero();        // of the left perturbation of H_curr_prev
   double rms_px = 0;                        // of the members' reprojection residuals, per coordinate
+};
+
+// The points of a step divided by motion: group_of[i] is the index of point i's group, or -1 for an outlier.
+struct Partition {
+  std::vector<Group> groups;
+  std::vector<std::int32_t> group_of;
+};
+
+// What a point is held to be in this step (method section 7).
+enum class PointRole : std::uint8_t {
+  unknown,
+  fixed,    // moves with the static scene
+  suspect,  // fits the static motion, but stands among moving points: not used for the ego motion (5.2.2)
+  moving,   // does not fit the static motion
+  outlier   // fits no body: mismatch, particle, caustic
 };
 
 enum class VisionState : std::uint8_t { init, tracking, degraded, lost, camera_fault, calibration_fault, standby };

@@ -1,6 +1,13 @@
 #pragma once
 // All settings of the core: one struct per stage beside its class, gathered here. Defaults live there only.
 
+#include "core/frontend/front_end.h"
+#include "core/motion/grouping.h"
+#include "core/motion/ray_filter.h"
+#include "core/motion/repartition.h"
+#include "core/motion/static_group.h"
+#include "core/objects/registry.h"
+
 namespace pelorus {
 
 // Each step of the method by its own name, so that its effect can be measured by leaving it out (paper section 7).
@@ -22,8 +29,37 @@ struct MethodSteps {
   bool motion_prediction = true;    // KLT starts from the body's predicted motion
 };
 
+struct EgoMotionConfig {
+  int min_static_points = 12;         // fewer: LOST
+  int degraded_static_points = 40;    // fewer: DEGRADED
+  double degraded_confidence = 0.10;  // world_confidence below it: DEGRADED
+  double min_sigma_px = 0.03;         // limits of the pixel deviation learned on line
+  double max_sigma_px = 1.0;
+  double start_sigma_px = 0.25;
+  double sigma_learning_rate = 0.1;  // per frame
+  double point_gate_chi2 = 9.0;      // mean over the window above which a point leaves the static scene
+  int unexplained_frames = 6;        // a point that fits no body for so long is given up
+  double window_pull = 0.2;          // share of the way to the window's pose that each frame takes
+  double lost_inflation = 25.0;      // of the pose covariance after a loss
+};
+
 struct PipelineConfig {
   MethodSteps steps;
+  FrontEndConfig front_end;
+  SeedPointsConfig seed_points;
+  GroupingConfig grouping;
+  StaticGroupConfig static_group;
+  TwoFrameBaConfig two_frame_ba;
+  RepartitionConfig repartition;
+  RayFilterConfig ray_filter;
+  EgoMotionConfig ego_motion;
+  BodyWindowConfig static_window;
+  MembershipConfig membership;
+  IdentityConfig identity;
+  MergeConfig merge;
+  ReidentificationConfig reidentification;
+  RegistryConfig registry;
+  BodyWindowConfig object_window{.recent_frames = 6, .key_frames = 4, .max_points = 90, .acceleration_prior = true};
 };
 
 }  // namespace pelorus

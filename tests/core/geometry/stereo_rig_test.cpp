@@ -25,6 +25,12 @@ TEST(StereoRig, JacobianMatchesFiniteDifferences) {
   }
 }
 
+TEST(StereoRig, TriangulateJacobianInvertsProjectJacobian) {
+  const Eigen::Vector3d p_cam(0.3, -0.2, 3.1);
+  const Eigen::Matrix3d product = kRig.triangulate_jacobian(p_cam) * kRig.project_jacobian(p_cam);
+  EXPECT_TRUE(product.isApprox(Eigen::Matrix3d::Identity(), 1e-12));
+}
+
 TEST(StereoRig, CovarianceMatchesSampledScatter) {
   std::mt19937 rng(5);
   std::normal_distribution<double> noise(0.0, 0.25);

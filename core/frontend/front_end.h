@@ -1,0 +1,140 @@
+#pragma once
+// Front end (paper 5.1, Fig. 2; method section 3): carries points by KLT from left(k-1) to left(k), from the place
+// predicted by the motion of the body each belongs to, and along the row to right(k); anchors them to kept reference
+// images; starts new ones by SURF where the view, or a body's outline, has too few; bridges a loss by SURF.
+// Two matched clouds with persistent track ids result. Thread-bound. Bounded by max_points and the detector's cap.
+
+#include <vector>
+
+#include "core/frontend/frame_images.h"
+#include "core/frontend/klt.h"
+#include "core/frontend/stereo_match.h"
+#include "core/frontend/surf.h"
+#include "core/frontend/surf_match.h"
+#include "core/frontend/track.h"
+
+namespace pelorus {
+
+struct FrontEndConfig {
+  KltConfig klt;
+  StereoMatchConfig stereo;
+  SurfConfig surf;
+  SurfMatchConfig surf_match;
+  int max_points = 600;
+  int cell_columns = 16;
+  int cell_rows = 12;
+  double min_distance_px = 12.0;        // between points of the background
+  double min_distance_object_px = 7.0;  // inside the outline of a body
+  int max_points_per_object = 90;
+  double forward_backward_px = 0.4;  // of tracks that no reference image confirms
+  double min_disparity_px = 0.7;
+  double max_disparity_change_px = 6.0;  // against the predicted disparity
+  double reference_agreement_px = 1.0;   // place by reference against place by previous frame
+  double reference_min_ncc = 0.85;
+  double slope_radius_px = 70.0;  // neighbours that tell the slope of the surface around a point
+  double max_slope = 0.15;        // disparity change per pixel above which an edge lies between two points
+  int reference_spacing = 5;      // frames between kept images
+  int reference_images = 8;
+  double refill_below = 0.85;       // detect again when fewer than this share of max_points live
+  int refill_every = 3;             // and at the latest after this many frames
+  double bridge_radius_px = 250.0;  // how far SURF looks for a lost point
+  double bridge_below = 0.35;       // share of points surviving KLT under which SURF bridges the loss
+};
+
+// Predicted apparent motion of a body for the coming step.
+struct BodyPrediction {
+  BodyId body;
+  Rigid3 H_curr_prev = Rigid3::Identity();
+};
+
+// Where refill starts more points.
+struct RefillArea {
+  std::array<OutlinePoint, 16> outline{};
+  int outline_size = 0;
+  int points_inside = 0;  // already there
+};
+
+// A search from one place to the neighbourhood of another.
+[[nodiscard]] inline KltTask task_between(double u_from_px, double v_from_px, double u_to_px, double v_to_px) {
+  KltTask task;
+  task.u_from_px = static_cast<float>(u_from_px);
+  task.v_from_px = static_cast<float>(v_from_px);
+  task.u_to_px = static_cast<float>(u_to_px);
+  task.v_to_px = static_cast<float>(v_to_px);
+  return task;
+}
+
+class FrontEnd {
+ public:
+  FrontEnd(const FrontEndConfig& config, const StereoRig& rig);
+
+  struct Counts {
+    int tracked = 0;
+    int lost = 0;
+    int bridged = 0;
+    int started = 0;
+  };
+
+  // Carries all points into `frame`. predictions[0] must be the world's; unknown points start from it.
+  // The pairs are valid until the next call; pair i belongs to track(i).
+  [[nodiscard]] PointPairs run(const StereoFrame& frame, std::span<const BodyPrediction> predictions);
+  // What the step found: the body of each pair (kNoBody = unexplained) and its measured motion, used to carry the
+  // anchors' warps. `motions` holds the step's H_curr_prev of every body named.
+  void settle(std::span<const BodyId> body_of_pair, std::span<const BodyPrediction> motions);
+  // Starts points on the current pair where there are too few; they become pairs with the next frame.
+  void refill(std::span<const RefillArea> areas, bool force);
+  // Forgets tracks for good (they proved to be outliers).
+  void drop(std::span<const TrackId> tracks);
+
+  [[nodiscard]] std::span<const Track> tracks() const { return tracks_; }
+  [[nodiscard]] std::span<Track> tracks() { return tracks_; }
+  [[nodiscard]] Track& track_of_pair(PointIndex pair);
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+
+ private:
+  void take_images(const StereoFrame& frame);
+  void carry_left(std::span<const BodyPrediction> predictions);
+  void retry_lost();
+  void detect();
+  void bridge_by_surf();
+  void check_backward();
+  void refine_by_reference();
+  void carry_right(std::span<const BodyPrediction> predictions);
+  void build_pairs();
+  void measure_slopes();
+  void renew_references();
+  [[nodiscard]] int free_slot();
+  [[nodiscard]] bool wants_refill(bool force) const;
+  void choose_starts(std::span<const RefillArea> areas);
+  void start_points();
+
+  FrontEndConfig config_;
+  StereoRig rig_;
+  Klt klt_;
+  StereoMatcher stereo_;
+  Surf surf_;
+  SurfMatcher surf_matcher_;
+  FrameImages images_;
+  std::vector<Track> tracks_;
+  std::vector<PointPair> pairs_;
+  std::vector<std::size_t> track_of_pair_;
+  std::vector<KltTask> left_tasks_;   // one per track
+  std::vector<KltTask> work_tasks_;   // subset passed to the tracker
+  std::vector<std::size_t> work_of_;  // the track of each work task
+  std::span<const SurfPoint> detected_points_;
+  std::vector<SurfPoint> starts_;
+  std::vector<SurfPoint> lost_points_;
+  std::vector<SurfDescriptor> lost_descriptors_;
+  std::vector<SurfDescriptor> descriptors_;
+  std::vector<StereoTask> stereo_tasks_;
+  std::vector<int> cell_counts_;
+  std::vector<int> area_counts_;
+  std::uint64_t next_track_ = 1;
+  int frames_ = 0;
+  int frames_since_refill_ = 0;
+  int frames_since_reference_ = 0;
+  bool detected_ = false;  // the detector has seen the current left image
+  Counts counts_;
+};
+
+}  // namespace pelorus

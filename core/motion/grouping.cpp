@@ -1,0 +1,203 @@
+#include "core/motion/grouping.h"
+
+#include <algorithm>
+
+#include "core/motion/rigidity.h"
+#include "core/motion/stereo_transfer.h"
+
+namespace pelorus {
+namespace {
+
+constexpr int kSampledProposals = 24;  // as many as a typical number of seeds, for a fair ablation
+
+const PointPair& at(PointPairs pairs, PointIndex i) { return pairs[static_cast<std::size_t>(i)]; }
+
+}  // namespace
+
+Grouping::Grouping(const GroupingConfig& config, const SeedPointsConfig& seeds, const TwoFrameBaConfig& ba,
+                   int capacity)
+    : config_(config), seed_points_(seeds), two_frame_ba_(ba, capacity) {}
+
+const Partition& Grouping::run(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
+                               std::span<const Rigid3> prior_motions, std::uint64_t seed, const Options& options) {
+  partition_.groups.clear();
+  partition_.group_of.assign(pairs.size(), -1);
+  label_.assign(candidates.size(), -1);
+  motions_.assign(prior_motions.begin(), prior_motions.end());
+  if (candidates.size() < static_cast<std::size_t>(config_.min_group_points)) return partition_;
+
+  if (options.rigidity) {
+    propose_by_rigidity(rig, pairs, candidates, seed);
+  } else {
+    propose_by_sampling(rig, pairs, candidates, seed);
+  }
+  claim_groups(rig, pairs, candidates);
+  if (options.reassignment) {
+    find_neighbours(pairs, candidates);
+    for (int round = 0; round < config_.reassignments; ++round) reassign(rig, pairs, candidates);
+  }
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    partition_.group_of[static_cast<std::size_t>(candidates[c])] = label_[c];
+  }
+  return partition_;
+}
+
+// Paper 5.1: no accept threshold; each point goes to the seed with which it is most rigid.
+void Grouping::propose_by_rigidity(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
+                                   std::uint64_t seed) {
+  const auto seeds = seed_points_.run(rig, pairs, candidates);
+  seed_groups_.resize(seeds.size());
+  for (auto& group : seed_groups_) group.clear();
+  for (const PointIndex i : candidates) {
+    std::size_t best = 0;
+    double best_cost = 1e30;
+    for (std::size_t s = 0; s < seeds.size(); ++s) {
+      if (seeds[s] == i) continue;
+      const double cost = rigidity(rig, at(pairs, seeds[s]), at(pairs, i)).cost;
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = s;
+      }
+    }
+    seed_groups_[best].push_back(i);
+  }
+  for (std::size_t s = 0; s < seed_groups_.size(); ++s) {
+    const auto motion = propose_motion(rig, pairs, seed_groups_[s], seed * 64 + s, config_.proposal);
+    if (motion) motions_.push_back(*motion);
+  }
+}
+
+void Grouping::propose_by_sampling(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
+                                   std::uint64_t seed) {
+  for (std::uint64_t s = 0; s < kSampledProposals; ++s) {
+    const auto motion = propose_motion(rig, pairs, candidates, seed * 64 + s, config_.proposal);
+    if (motion) motions_.push_back(*motion);
+  }
+}
+
+void Grouping::score(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
+                     const Rigid3& motion, std::vector<float>& chi2) const {
+  chi2.resize(candidates.size());
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    chi2[c] = static_cast<float>(transfer_chi2(rig, motion, at(pairs, candidates[c])));
+  }
+}
+
+// Greedy cover: the motion that explains most of what is left, refined on it, claims it. Proposals that agree with
+// one already taken find nothing left: that is the consolidation of groups with equal motions.
+void Grouping::claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates) {
+  motion_chi2_.resize(std::max(motion_chi2_.size(), motions_.size()));
+  for (std::size_t m = 0; m < motions_.size(); ++m) score(rig, pairs, candidates, motions_[m], motion_chi2_[m]);
+  std::vector<float>& refined_chi2 = motion_chi2_.emplace_back();
+  while (static_cast<int>(partition_.groups.size()) < config_.max_groups) {
+    std::size_t best = motions_.size();
+    double best_score = 0;
+    for (std::size_t m = 0; m < motions_.size(); ++m) {
+      double sum = 0;
+      for (std::size_t c = 0; c < candidates.size(); ++c) {
+        if (label_[c] < 0) sum += std::max(0.0, config_.gate_chi2 - static_cast<double>(motion_chi2_[m][c]));
+      }
+      if (sum > best_score) {
+        best_score = sum;
+        best = m;
+      }
+    }
+    if (best == motions_.size()) break;
+    Group group;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (label_[c] < 0 && static_cast<double>(motion_chi2_[best][c]) < config_.gate_chi2) {
+        group.members.push_back(candidates[c]);
+      }
+    }
+    if (static_cast<int>(group.members.size()) < config_.min_group_points) break;
+    const MotionFit fit = two_frame_ba_.run(rig, pairs, group.members, motions_[best]);
+    group.H_curr_prev = fit.outcome == StageOutcome::degenerate ? motions_[best] : fit.H_curr_prev;
+    score(rig, pairs, candidates, group.H_curr_prev, refined_chi2);
+    const auto number = static_cast<std::int32_t>(partition_.groups.size());
+    int claimed = 0;
+    for (std::size_t c = 0; c < candidates.size(); ++c) {
+      if (label_[c] >= 0 || static_cast<double>(refined_chi2[c]) >= config_.gate_chi2) continue;
+      label_[c] = number;
+      ++claimed;
+    }
+    if (claimed < config_.min_group_points) {
+      for (auto& label : label_) {
+        if (label == number) label = -1;
+      }
+      break;
+    }
+    partition_.groups.push_back(std::move(group));
+  }
+  motion_chi2_.pop_back();
+  collect_members(candidates);
+}
+
+void Grouping::find_neighbours(PointPairs pairs, std::span<const PointIndex> candidates) {
+  const auto k = static_cast<std::size_t>(config_.neighbours);
+  neighbours_.assign(candidates.size() * k, -1);
+  std::vector<double> nearest(k);
+  const double radius2 = config_.neighbour_radius_px * config_.neighbour_radius_px;
+  for (std::size_t a = 0; a < candidates.size(); ++a) {
+    std::fill(nearest.begin(), nearest.end(), radius2);
+    const Eigen::Vector2d here = at(pairs, candidates[a]).curr.z_px.head<2>();
+    std::int32_t* list = &neighbours_[a * k];
+    for (std::size_t b = 0; b < candidates.size(); ++b) {
+      const double d2 = (at(pairs, candidates[b]).curr.z_px.head<2>() - here).squaredNorm();
+      if (a == b || d2 >= nearest[k - 1]) continue;
+      std::size_t place = k - 1;
+      for (; place > 0 && nearest[place - 1] > d2; --place) {
+        nearest[place] = nearest[place - 1];
+        list[place] = list[place - 1];
+      }
+      nearest[place] = d2;
+      list[place] = static_cast<std::int32_t>(b);
+    }
+  }
+}
+
+// Least stereo residual plus smoothness (Judd & Gammell 2018 label in the same spirit), then refined motions.
+void Grouping::reassign(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates) {
+  const auto groups = partition_.groups.size();
+  if (groups == 0) return;
+  motion_chi2_.resize(std::max(motion_chi2_.size(), groups));
+  for (std::size_t g = 0; g < groups; ++g) {
+    score(rig, pairs, candidates, partition_.groups[g].H_curr_prev, motion_chi2_[g]);
+  }
+  const auto k = static_cast<std::size_t>(config_.neighbours);
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    std::int32_t best = -1;
+    double best_cost = config_.gate_chi2 + config_.smoothness_chi2;
+    for (std::size_t g = 0; g < groups; ++g) {
+      const double chi2 = static_cast<double>(motion_chi2_[g][c]);
+      if (chi2 >= config_.gate_chi2) continue;
+      int other = 0;
+      int all = 0;
+      for (std::size_t n = 0; n < k && neighbours_[c * k + n] >= 0; ++n, ++all) {
+        other += label_[static_cast<std::size_t>(neighbours_[c * k + n])] != static_cast<std::int32_t>(g);
+      }
+      const double cost = chi2 + (all > 0 ? config_.smoothness_chi2 * other / all : 0.0);
+      if (cost < best_cost) {
+        best_cost = cost;
+        best = static_cast<std::int32_t>(g);
+      }
+    }
+    label_[c] = best;
+  }
+  collect_members(candidates);
+  for (Group& group : partition_.groups) {
+    const MotionFit fit = two_frame_ba_.run(rig, pairs, group.members, group.H_curr_prev);
+    if (fit.outcome == StageOutcome::too_few_points || fit.outcome == StageOutcome::degenerate) continue;
+    group.H_curr_prev = fit.H_curr_prev;
+    group.cov_H = fit.cov_H;
+    group.rms_px = fit.rms_px;
+  }
+}
+
+void Grouping::collect_members(std::span<const PointIndex> candidates) {
+  for (Group& group : partition_.groups) group.members.clear();
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (label_[c] >= 0) partition_.groups[static_cast<std::size_t>(label_[c])].members.push_back(candidates[c]);
+  }
+}
+
+}  // namespace pelorus

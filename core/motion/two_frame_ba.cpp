@@ -1,0 +1,124 @@
+#include "core/motion/two_frame_ba.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/stereo_transfer.h"
+
+namespace pelorus {
+namespace {
+
+// One point's contribution to the reduced normal equations.
+struct PointTerm {
+  Eigen::Vector3d r_prev, r_curr;  // measured - predicted [px]
+  Eigen::Matrix3d A;               // d predicted curr / d z_hat
+  Eigen::Matrix<double, 3, 6> B;   // d predicted curr / d xi
+  double chi2 = 0;
+  bool usable = false;
+};
+
+PointTerm linearize(const StereoRig& rig, const Rigid3& H, const PointPair& pair, const Eigen::Vector3d& z_hat_px) {
+  PointTerm term;
+  if (!(z_hat_px.x() > z_hat_px.z())) return term;  // behind or at infinity
+  const Eigen::Vector3d p_prev = rig.triangulate(z_hat_px);
+  const Eigen::Vector3d p_curr = H * p_prev;
+  if (!(p_curr.z() > 1e-3)) return term;
+  const Eigen::Matrix3d J = rig.project_jacobian(p_curr);
+  term.A = J * H.linear() * rig.triangulate_jacobian(p_prev);
+  term.B.leftCols<3>() = J;
+  term.B.rightCols<3>() = -J * skew(p_curr);
+  term.r_prev = pair.prev.z_px - z_hat_px;
+  term.r_curr = pair.curr.z_px - rig.project(p_curr);
+  term.chi2 = (term.r_prev.squaredNorm() + term.r_curr.squaredNorm()) / (pair.sigma_px * pair.sigma_px);
+  term.usable = true;
+  return term;
+}
+
+double robust_weight(double chi2, double scale) {
+  const double s = 1.0 + chi2 / scale;
+  return 1.0 / (s * s);
+}
+
+}  // namespace
+
+TwoFrameBa::TwoFrameBa(const TwoFrameBaConfig& config, int capacity) : config_(config) {
+  used_.reserve(static_cast<std::size_t>(capacity));
+  z_hat_px_.reserve(static_cast<std::size_t>(capacity));
+}
+
+MotionFit TwoFrameBa::run(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> members,
+                          const Rigid3& H_start) {
+  MotionFit fit;
+  fit.H_curr_prev = H_start;
+  if (members.size() < 3) {
+    fit.outcome = StageOutcome::too_few_points;
+    return fit;
+  }
+  const auto stride = std::max<std::size_t>(1, (members.size() + static_cast<std::size_t>(config_.max_points) - 1) /
+                                                   static_cast<std::size_t>(config_.max_points));
+  used_.clear();
+  z_hat_px_.clear();
+  for (std::size_t i = 0; i < members.size(); i += stride) {
+    used_.push_back(members[i]);
+    z_hat_px_.push_back(pairs[static_cast<std::size_t>(members[i])].prev.z_px);
+  }
+
+  fit.outcome = StageOutcome::not_converged;
+  Matrix6d information = Matrix6d::Zero();
+  double weighted_chi2 = 0;
+  double weight_sum = 0;
+  for (int iteration = 0; iteration < config_.max_iterations; ++iteration) {
+    information.setZero();
+    Vector6d gradient = Vector6d::Zero();
+    weighted_chi2 = weight_sum = 0;
+    // Points first move to their best place under the present motion (their own 3x3 step), then the reduced
+    // system of the motion follows: one Gauss-Newton step of the full problem.
+    for (std::size_t i = 0; i < used_.size(); ++i) {
+      const PointPair& pair = pairs[static_cast<std::size_t>(used_[i])];
+      const PointTerm first = linearize(rig, fit.H_curr_prev, pair, z_hat_px_[i]);
+      if (!first.usable) continue;
+      const Eigen::Matrix3d V_first = Eigen::Matrix3d::Identity() + first.A.transpose() * first.A;
+      z_hat_px_[i] += V_first.inverse() * (first.r_prev + first.A.transpose() * first.r_curr);
+      const PointTerm term = linearize(rig, fit.H_curr_prev, pair, z_hat_px_[i]);
+      if (!term.usable) {
+        z_hat_px_[i] = pair.prev.z_px;
+        continue;
+      }
+      const double w = robust_weight(term.chi2, config_.robust_chi2);
+      const double w_px = w / (pair.sigma_px * pair.sigma_px);
+      const Eigen::Matrix3d V_inv = (Eigen::Matrix3d::Identity() + term.A.transpose() * term.A).inverse();
+      const Eigen::Matrix<double, 6, 3> BtA = term.B.transpose() * term.A;
+      const Eigen::Matrix<double, 6, 3> W = BtA * V_inv;
+      information += w_px * (term.B.transpose() * term.B - W * BtA.transpose());
+      gradient += w_px * (term.B.transpose() * term.r_curr - W * (term.r_prev + term.A.transpose() * term.r_curr));
+      weighted_chi2 += w * term.chi2;
+      weight_sum += w;
+    }
+    const Eigen::LDLT<Matrix6d> solver(information);
+    if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-12)) {
+      fit.outcome = StageOutcome::degenerate;
+      return fit;
+    }
+    const Vector6d xi = solver.solve(gradient);
+    fit.H_curr_prev = se3_exp(xi) * fit.H_curr_prev;
+    if (xi.norm() < config_.converged_update) {
+      fit.outcome = StageOutcome::ok;
+      break;
+    }
+  }
+
+  // 3 N measurements of the transfer, 6 spent on the motion; the kernel's loss of weight is divided out.
+  const double dof = std::max(1.0, 3.0 * weight_sum - 6.0);
+  const double variance_scale = weighted_chi2 / dof;
+  fit.cov_H = information.inverse() * std::max(0.25, variance_scale);
+  const double sigma_px = pairs[static_cast<std::size_t>(used_.front())].sigma_px;
+  fit.rms_px = sigma_px * std::sqrt(variance_scale);
+  for (const PointIndex m : members) {
+    fit.support += transfer_chi2(rig, fit.H_curr_prev, pairs[static_cast<std::size_t>(m)]) < kChi2_3dof_999;
+  }
+  return fit;
+}
+
+}  // namespace pelorus

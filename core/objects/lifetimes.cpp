@@ -1,0 +1,101 @@
+// Registry's judgement of lives: evidence and confirmation, coasting, merging. Part of Registry (registry.h).
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/motion/stereo_transfer.h"
+#include "core/objects/registry.h"
+#include "core/objects/spread.h"
+
+namespace pelorus {
+
+// Likelihood of the body's own motion against "it is static" (Wedel et al. 2009), summed over points and frames.
+void Registry::weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const double> chi2_static,
+                              const WorldStep& world, MovingBody& body) const {
+  double shift2_px2 = 0;
+  for (const PointIndex i : body.members) {
+    const double own = transfer_chi2(rig, body.H_curr_prev, pairs[static_cast<std::size_t>(i)]);
+    const double ratio = 0.5 * (chi2_static[static_cast<std::size_t>(i)] - own);
+    body.evidence += std::clamp(ratio, -config_.evidence_cap, config_.evidence_cap);
+  }
+  if (body.phase != ObjectPhase::tentative) return;
+  const Eigen::Vector3d center_obj = Eigen::Vector3d::Zero();
+  const Eigen::Vector3d moved_world = body.T_world_obj * center_obj - body.birth_centroid_world;
+  const Rigid3 T_curr_world = world.T_world_curr.inverse();
+  const Eigen::Vector3d p_now = T_curr_world * (body.T_world_obj * center_obj);
+  const Eigen::Vector3d p_then = T_curr_world * body.birth_centroid_world;
+  if (p_now.z() > 0.05 && p_then.z() > 0.05) shift2_px2 = (rig.project(p_now) - rig.project(p_then)).squaredNorm();
+  Eigen::Matrix<double, 3, 6> J;
+  J << Eigen::Matrix3d::Identity(), -skew(body.T_world_obj * center_obj);
+  const Eigen::Matrix3d cov = J * body.cov_T_world_obj * J.transpose() + 1e-12 * Eigen::Matrix3d::Identity();
+  const double significance = std::sqrt(std::max(0.0, moved_world.dot(cov.ldlt().solve(moved_world))));
+  const bool enough = body.frames_measured >= config_.confirm_frames &&
+                      static_cast<int>(body.members.size()) >= config_.min_points &&
+                      spread_px(pairs, body.members) >= config_.min_spread_px;
+  if (enough && body.evidence > config_.confirm_evidence && significance > config_.confirm_sigmas &&
+      shift2_px2 > config_.confirm_move_px * config_.confirm_move_px) {
+    body.phase = ObjectPhase::confirmed;
+  }
+}
+
+// Extrapolation with growing covariance (white-noise acceleration); a tentative body is given up soon.
+void Registry::coast(const WorldStep& world, MovingBody& body) const {
+  ++body.frames_missed;
+  if (body.phase == ObjectPhase::tentative) {
+    if (body.frames_missed > config_.tentative_patience_frames) body.phase = ObjectPhase::ended;
+  } else {
+    body.phase = seconds(world.time - body.last_seen) > config_.coast_s ? ObjectPhase::ended : ObjectPhase::coasting;
+  }
+  const Rigid3 before = body.T_world_obj;
+  body.T_world_obj = before * se3_exp(body.twist_obj * world.dt_s);
+  body.M_world = body.T_world_obj * before.inverse();
+  body.T_cam_obj = world.T_world_curr.inverse() * body.T_world_obj;
+  const double away_s = seconds(world.time - body.last_seen);
+  const double grown_m = config_.sigma_acceleration_mps2 * std::pow(away_s, 1.5);
+  const double grown_rad = config_.sigma_acceleration_radps2 * std::pow(away_s, 1.5);
+  Matrix6d growth = Matrix6d::Zero();
+  growth.topLeftCorner<3, 3>().diagonal().setConstant(grown_m * grown_m * world.dt_s / std::max(away_s, 1e-3));
+  growth.bottomRightCorner<3, 3>().diagonal().setConstant(grown_rad * grown_rad * world.dt_s / std::max(away_s, 1e-3));
+  const Matrix6d Ad = adjoint(body.T_world_obj);
+  body.cov_T_world_obj += Ad * growth * Ad.transpose();
+  body.cov_M_world += Ad * growth * Ad.transpose();
+}
+
+void Registry::merge_alike(PointPairs pairs, std::span<BodyId> owner) {
+  for (std::size_t a = 0; a < bodies_.size(); ++a) {
+    for (std::size_t b = a + 1; b < bodies_.size(); ++b) {
+      MovingBody& older = bodies_[a];
+      MovingBody& younger = bodies_[b];
+      const std::array<std::int32_t, 2> ids{older.id.value, younger.id.value};
+      auto entry =
+          std::find_if(alike_.begin(), alike_.end(), [&](const auto& e) { return e[0] == ids[0] && e[1] == ids[1]; });
+      const bool alike = older.measured && younger.measured && motion_mismatch(older, younger) < merge_.gate_chi2 &&
+                         touching(pairs, older, younger, merge_);
+      if (!alike) {
+        if (entry != alike_.end()) alike_.erase(entry);
+        continue;
+      }
+      if (entry == alike_.end()) entry = alike_.insert(alike_.end(), {ids[0], ids[1], 0});
+      const int needed = younger.phase == ObjectPhase::tentative ? 1 : merge_.agreeing_frames;
+      if (++(*entry)[2] < needed) continue;
+      for (const PointIndex i : younger.members) {
+        older.members.push_back(i);
+        owner[static_cast<std::size_t>(i)] = older.id;
+      }
+      older.evidence += younger.evidence;
+      younger.members.clear();
+      younger.measured = false;
+      younger.phase = ObjectPhase::ended;
+    }
+  }
+}
+
+void Registry::release(const MovingBody& body, std::span<BodyId> owner) const {
+  for (BodyId& id : owner) {
+    if (id == body.id) id = kNoBody;
+  }
+}
+
+}  // namespace pelorus

@@ -1,0 +1,49 @@
+#pragma once
+// A moving rigid body as the registry remembers it (paper 6.1, the table of objects; method section 8). Plain data
+// with its refinement window; indices are into the pairs of the present step.
+
+#include <vector>
+
+#include "core/frontend/surf.h"
+#include "core/model/stage_data.h"
+#include "core/refine/body_window.h"
+
+namespace pelorus {
+
+// A point of the body's model, in the frame fixed at its birth: what the hull and re-identification look at.
+struct ModelPoint {
+  TrackId track;
+  Eigen::Vector3d p_obj = Eigen::Vector3d::Zero();
+  SurfDescriptor descriptor{};
+  std::int8_t laplacian = 0;
+  bool has_descriptor = false;
+  std::int64_t last_frame = 0;  // number of the step in which it was last seen
+};
+
+struct MovingBody {
+  explicit MovingBody(const BodyWindowConfig& window_config) : window(window_config) {}
+
+  BodyId id;
+  ObjectPhase phase = ObjectPhase::tentative;
+  Timestamp first_seen;
+  Timestamp last_seen;
+  int frames_measured = 0;
+  int frames_missed = 0;  // in a row
+  double evidence = 0;    // sum of log-likelihood ratios, own motion against static
+  bool measured = false;  // in this step
+  Rigid3 T_cam_obj = Rigid3::Identity();
+  Rigid3 T_world_obj = Rigid3::Identity();
+  Matrix6d cov_T_world_obj = Matrix6d::Zero();
+  Rigid3 M_world = Rigid3::Identity();
+  Matrix6d cov_M_world = Matrix6d::Zero();
+  Vector6d twist_obj = Vector6d::Zero();    // per second, in the object frame: T_obj <- T_obj * exp(twist dt)
+  Rigid3 H_curr_prev = Rigid3::Identity();  // predicted, then measured
+  std::vector<PointIndex> members;
+  std::vector<ModelPoint> model;
+  Eigen::Vector3d centroid_obj = Eigen::Vector3d::Zero();
+  Eigen::Vector3d extent_m = Eigen::Vector3d::Zero();
+  Eigen::Vector3d birth_centroid_world = Eigen::Vector3d::Zero();
+  BodyWindow window;
+};
+
+}  // namespace pelorus

@@ -1,0 +1,98 @@
+#pragma once
+// The table of moving bodies with their lifetimes (paper 6.1) and their passage through a step (6.2): prediction,
+// membership, identity of new groups, re-identification, refinement, birth, coasting, end. Thread-bound.
+// Nothing is an object before it has points, frames and spread enough, and evidence that it moves.
+
+#include "core/objects/identity.h"
+#include "core/objects/membership.h"
+#include "core/objects/merge.h"
+#include "core/objects/reidentification.h"
+
+namespace pelorus {
+
+struct RegistryConfig {
+  int min_points = 6;               // of a birth
+  double min_spread_px = 4.0;       // deviation of its points along their second axis in the image
+  int confirm_frames = 3;           // measured frames before a body is an object
+  double confirm_evidence = 150.0;  // log-likelihood ratio of own motion against static, summed
+  double evidence_cap = 20.0;       // per point and frame
+  double confirm_sigmas = 6.0;      // displacement since birth over its deviation
+  double confirm_move_px = 2.0;     // and at least this much in the image, beyond any systematic matching error
+  double tentative_patience_frames = 2;
+  double coast_s = 4.0;                  // out of sight before a confirmed body ends
+  double sigma_acceleration_mps2 = 0.3;  // growth of the covariance while coasting
+  double sigma_acceleration_radps2 = 0.3;
+  double point_gate_chi2 = 12.0;  // mean over its frames above which a point leaves the body's window
+  int max_model_points = 250;
+};
+
+struct RegistrySteps {
+  bool hull_membership = true;
+  bool identity_mismatch = true;
+  bool merge = true;
+  bool object_window = true;
+  bool reidentification = true;
+};
+
+// What the static part of the step found.
+struct WorldStep {
+  Timestamp time;
+  double dt_s = 0.1;
+  Rigid3 T_world_prev = Rigid3::Identity();  // camera at the previous frame
+  Rigid3 T_world_curr = Rigid3::Identity();
+  Matrix6d cov_H_static = Matrix6d::Zero();
+  std::uint64_t seed = 0;
+};
+
+class Registry {
+ public:
+  Registry(const RegistryConfig& config, const MembershipConfig& membership, const IdentityConfig& identity,
+           const MergeConfig& merge, const ReidentificationConfig& reidentification, const BodyWindowConfig& window,
+           const TwoFrameBaConfig& ba, int capacity);
+
+  // Expected apparent motion of each body for the coming step, given the expected camera pose.
+  void predict(const Rigid3& T_world_prev, const Rigid3& T_world_curr, double dt_s);
+  // Members of the known bodies; claims their pairs in `owner`.
+  void claim(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
+             std::span<const double> chi2_static, const WorldStep& world, const RegistrySteps& steps,
+             std::span<BodyId> owner);
+  // New groups among the moving points that no body claimed: identified, re-identified or registered.
+  void adopt(const StereoRig& rig, PointPairs pairs, const Partition& groups,
+             std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
+             std::span<BodyId> owner);
+  // Poses, windows, evidence, phases; merges and ends. Releases pairs of bodies that ended in `owner`.
+  void settle(const StereoRig& rig, PointPairs pairs, std::span<const double> chi2_static,
+              std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
+              std::span<BodyId> owner);
+
+  [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
+
+ private:
+  void measure(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
+               const WorldStep& world, const RegistrySteps& steps, MovingBody& body);
+  void remember_points(PointPairs pairs, std::span<const Track* const> track_of_pair, MovingBody& body);
+  void weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const double> chi2_static,
+                      const WorldStep& world, MovingBody& body) const;
+  void coast(const WorldStep& world, MovingBody& body) const;
+  void give_birth(const StereoRig& rig, PointPairs pairs, const Group& group, const WorldStep& world,
+                  std::span<BodyId> owner);
+  void resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
+              const WorldStep& world, std::span<BodyId> owner);
+  void merge_alike(PointPairs pairs, std::span<BodyId> owner);
+  void release(const MovingBody& body, std::span<BodyId> owner) const;
+
+  RegistryConfig config_;
+  Membership membership_;
+  IdentityConfig identity_;
+  MergeConfig merge_;
+  ReidentificationConfig reidentification_;
+  BodyWindowConfig window_config_;
+  TwoFrameBa two_frame_ba_;
+  std::vector<MovingBody> bodies_;
+  std::vector<WindowObservation> observations_;
+  std::vector<std::array<std::int32_t, 3>> alike_;  // ids of two bodies and the frames they moved alike in a row
+  std::int32_t next_id_ = 1;
+  std::int64_t step_ = 0;
+};
+
+}  // namespace pelorus

@@ -1,0 +1,122 @@
+#include "core/objects/reidentification.h"
+
+#include <algorithm>
+
+#include "core/geometry/rigid_fit.h"
+#include "core/motion/motion_proposal.h"
+
+namespace pelorus {
+namespace {
+
+struct ModelMatch {
+  Eigen::Vector3d p_obj;
+  const PointPair* pair = nullptr;
+};
+
+double distance2(const SurfDescriptor& a, const SurfDescriptor& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double d = static_cast<double>(a[i]) - static_cast<double>(b[i]);
+    sum += d * d;
+  }
+  return sum;
+}
+
+std::vector<ModelMatch> match_model(PointPairs pairs, const Group& group, std::span<const Track* const> track_of_pair,
+                                    const MovingBody& body, const ReidentificationConfig& config) {
+  std::vector<ModelMatch> matches;
+  for (const PointIndex i : group.members) {
+    const Track& track = *track_of_pair[static_cast<std::size_t>(i)];
+    if (!track.has_descriptor) continue;
+    double nearest = 1e30;
+    double second = 1e30;
+    const ModelPoint* best = nullptr;
+    for (const ModelPoint& point : body.model) {
+      if (!point.has_descriptor || point.laplacian != track.laplacian) continue;
+      const double d2 = distance2(point.descriptor, track.descriptor);
+      if (d2 < nearest) {
+        // A re-detection of the same spot is no rival: it must not fail the ratio test.
+        if (best == nullptr || (best->p_obj - point.p_obj).norm() > 0.03) second = nearest;
+        nearest = d2;
+        best = &point;
+      } else if (d2 < second && (best->p_obj - point.p_obj).norm() > 0.03) {
+        second = d2;
+      }
+    }
+    if (best == nullptr || nearest > config.max_descriptor_distance2 || nearest > config.ratio2 * second) continue;
+    matches.push_back({best->p_obj, &pairs[static_cast<std::size_t>(i)]});
+  }
+  return matches;
+}
+
+int support(const StereoRig& rig, const std::vector<ModelMatch>& matches, const Rigid3& T_cam_obj, double gate_chi2) {
+  int count = 0;
+  for (const ModelMatch& m : matches) {
+    const Eigen::Vector3d p_cam = T_cam_obj * m.p_obj;
+    if (!(p_cam.z() > 0.05)) continue;
+    // Twice the variance of a measurement: the model point was measured too. SURF centres move by a pixel or so
+    // between views, hence the floor.
+    const double sigma_px = std::max(1.0, 1.5 * m.pair->sigma_px);
+    const Eigen::Vector3d r = m.pair->curr.z_px - rig.project(p_cam);
+    count += r.squaredNorm() / (sigma_px * sigma_px) < gate_chi2;
+  }
+  return count;
+}
+
+std::optional<Rigid3> fit_pose(const StereoRig& rig, const std::vector<ModelMatch>& matches, std::uint64_t seed,
+                               const ReidentificationConfig& config, int& best_support) {
+  SampleSequence sequence(seed);
+  std::optional<Rigid3> best;
+  best_support = 0;
+  for (int s = 0; s < config.samples; ++s) {
+    std::array<PointMatch, 3> sample;
+    for (PointMatch& m : sample) {
+      const ModelMatch& chosen = matches[sequence.below(matches.size())];
+      m = {chosen.p_obj, chosen.pair->curr.p_cam, 1.0};
+    }
+    const auto T_cam_obj = fit_rigid(sample);
+    if (!T_cam_obj) continue;
+    const int count = support(rig, matches, *T_cam_obj, config.gate_chi2);
+    if (count > best_support) {
+      best_support = count;
+      best = T_cam_obj;
+    }
+  }
+  if (!best || best_support < 3) return std::nullopt;
+  std::vector<PointMatch> inliers;
+  for (const ModelMatch& m : matches) {
+    const Eigen::Vector3d p_cam = *best * m.p_obj;
+    if (p_cam.z() > 0.05 && (m.pair->curr.z_px - rig.project(p_cam)).squaredNorm() < config.gate_chi2) {
+      inliers.push_back({m.p_obj, m.pair->curr.p_cam, 1.0 / std::pow(m.pair->curr.p_cam.z(), 4)});
+    }
+  }
+  const auto refined = fit_rigid(inliers);
+  return refined ? refined : best;
+}
+
+}  // namespace
+
+Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& group,
+                        std::span<const Track* const> track_of_pair, std::span<const MovingBody> bodies,
+                        std::span<const Rigid3> expected_T_cam_obj, Timestamp now, std::uint64_t seed,
+                        const ReidentificationConfig& config) {
+  Reidentified found;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const PointIndex i : group.members) center += pairs[static_cast<std::size_t>(i)].curr.p_cam;
+  center /= static_cast<double>(group.members.size());
+  for (std::size_t j = 0; j < bodies.size(); ++j) {
+    const MovingBody& body = bodies[j];
+    if (body.phase != ObjectPhase::coasting) continue;
+    const double gate_m = config.gate_m + config.growth_mps * seconds(now - body.last_seen) + body.extent_m.norm() / 2;
+    if ((expected_T_cam_obj[j] * body.centroid_obj - center).norm() > gate_m) continue;
+    const auto matches = match_model(pairs, group, track_of_pair, body, config);
+    if (static_cast<int>(matches.size()) < config.min_matches) continue;
+    int count = 0;
+    const auto T_cam_obj = fit_pose(rig, matches, seed + j, config, count);
+    if (!T_cam_obj || count < config.min_matches || count <= found.matches) continue;
+    found = {static_cast<std::int32_t>(j), *T_cam_obj, count};
+  }
+  return found;
+}
+
+}  // namespace pelorus

@@ -1,0 +1,35 @@
+#pragma once
+// Recognition of a body that comes back after an occlusion (method section 8): its expected place gates, SURF
+// descriptors of the group's points against those of the body's model propose matches, and a rigid fit of the
+// matches decides and yields the pose, so that the body keeps its id and its frame. Pure; deterministic.
+
+#include <optional>
+
+#include "core/frontend/track.h"
+#include "core/objects/moving_body.h"
+
+namespace pelorus {
+
+struct ReidentificationConfig {
+  double max_descriptor_distance2 = 0.25;  // of unit-length descriptors
+  double ratio2 = 0.72;                    // squared ratio of nearest to second nearest
+  int min_matches = 5;
+  double gate_m = 0.8;  // from the expected place, plus growth_mps per second out of sight
+  double growth_mps = 0.25;
+  double gate_chi2 = 16.266;
+  int samples = 64;
+};
+
+struct Reidentified {
+  std::int32_t body = -1;
+  Rigid3 T_cam_obj = Rigid3::Identity();  // at the current frame
+  int matches = 0;
+};
+
+// `expected_T_cam_obj[j]`: extrapolated pose of body j in the current camera.
+[[nodiscard]] Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& group,
+                                      std::span<const Track* const> track_of_pair, std::span<const MovingBody> bodies,
+                                      std::span<const Rigid3> expected_T_cam_obj, Timestamp now, std::uint64_t seed,
+                                      const ReidentificationConfig& config);
+
+}  // namespace pelorus

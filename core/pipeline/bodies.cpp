@@ -1,0 +1,167 @@
+// Steps of the pipeline that concern moving bodies, new points and the result.
+
+#include <algorithm>
+
+#include "core/geometry/hull.h"
+#include "core/pipeline/state.h"
+
+namespace pelorus {
+
+Pipeline::State::State(const PipelineConfig& c, const StereoRig& r)
+    : config(c),
+      rig(r),
+      front_end(c.front_end, r),
+      grouping(c.grouping, c.seed_points, c.two_frame_ba, c.front_end.max_points),
+      moving_grouping(c.grouping, c.seed_points, c.two_frame_ba, c.front_end.max_points),
+      two_frame_ba(c.two_frame_ba, c.front_end.max_points),
+      net(c.front_end.max_points),
+      static_window(c.static_window),
+      registry(c.registry, c.membership, c.identity, c.merge, c.reidentification, c.object_window, c.two_frame_ba,
+               c.front_end.max_points),
+      sigma_px(c.ego_motion.start_sigma_px) {}
+
+void Pipeline::State::follow_bodies() {
+  if (!started || !ego_found()) return;
+  const MethodSteps& on = config.steps;
+  const RegistrySteps steps{on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window,
+                            on.reidentification};
+  registry.claim(rig, pairs, roles, chi2_static, world, steps, owner);
+}
+
+// The moving points that no known body explains are divided among new groups (6.1 step 7).
+void Pipeline::State::find_new_bodies() {
+  if (!started || !ego_found()) return;
+  open.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (roles[i] == PointRole::moving && owner[i] == kNoBody) open.push_back(static_cast<PointIndex>(i));
+  }
+  const MethodSteps& on = config.steps;
+  const Grouping::Options options{on.rigidity_grouping, on.motion_reassignment};
+  const Partition& groups = moving_grouping.run(rig, pairs, open, {}, world.seed + 1, options);
+  const RegistrySteps steps{on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window,
+                            on.reidentification};
+  registry.adopt(rig, pairs, groups, track_of_pair, world, steps, owner);
+}
+
+void Pipeline::State::settle_bodies() {
+  if (!started || !ego_found()) return;
+  const MethodSteps& on = config.steps;
+  const RegistrySteps steps{on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window,
+                            on.reidentification};
+  registry.settle(rig, pairs, chi2_static, track_of_pair, world, steps, owner);
+  result.report[Stage::objects].outcome = StageOutcome::ok;
+}
+
+void Pipeline::State::start_points() {
+  predictions.clear();
+  predictions.push_back({kWorldBody, ego.H_curr_prev});
+  std::vector<RefillArea> areas;
+  for (const MovingBody& body : registry.bodies()) {
+    predictions.push_back({body.id, body.H_curr_prev});
+    if (!config.steps.object_refill || !body.measured) continue;
+    RefillArea area;
+    outline_of(body, 1.25, area.outline, area.outline_size);
+    area.points_inside = static_cast<int>(body.members.size());
+    areas.push_back(area);
+  }
+  if (started && ego_found()) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      if (owner[i] == kNoBody && roles[i] == PointRole::fixed) owner[i] = kWorldBody;
+    }
+    drop_unexplained();
+    front_end.settle(owner, predictions);
+    front_end.drop(rejected);
+  } else if (!started) {
+    front_end.settle({}, predictions);
+  }
+  front_end.refill(areas, !started || lost);
+  result.report.points_started = front_end.counts().started;
+  started = true;
+}
+
+// Points that leave the static scene by their record over the window, and points that fit nothing for long.
+void Pipeline::State::drop_unexplained() {
+  rejected.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    Track& track = front_end.track_of_pair(static_cast<PointIndex>(i));
+    if (owner[i] == kWorldBody) {
+      const BodyPoint* point = static_window.find(track.id);
+      if (point != nullptr && point->observations >= 4 && point->chi2_mean > config.ego_motion.point_gate_chi2) {
+        static_window.remove(track.id);
+        owner[i] = kNoBody;
+      }
+    }
+    track.unexplained = owner[i] == kNoBody ? track.unexplained + 1 : 0;
+    if (track.unexplained >= config.ego_motion.unexplained_frames) rejected.push_back(track.id);
+  }
+}
+
+void Pipeline::State::outline_of(const MovingBody& body, double grow, std::array<OutlinePoint, 16>& outline,
+                                 int& size) const {
+  std::vector<Eigen::Vector2d> points;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const PointIndex i : body.members) {
+    points.push_back(pairs[static_cast<std::size_t>(i)].curr.z_px.head<2>());
+    mean += points.back();
+  }
+  size = 0;
+  if (points.size() < 3) return;
+  mean /= static_cast<double>(points.size());
+  std::array<Eigen::Vector2d, 16> hull;
+  size = convex_outline(points, hull);
+  for (int k = 0; k < size; ++k) {
+    const Eigen::Vector2d grown = mean + grow * (hull[static_cast<std::size_t>(k)] - mean);
+    outline[static_cast<std::size_t>(k)] = {static_cast<float>(grown.x()), static_cast<float>(grown.y())};
+  }
+}
+
+void Pipeline::State::publish_object(const MovingBody& body, ObjectState& object) const {
+  object.id = body.id;
+  object.phase = body.phase;
+  object.motion_measured = body.measured;
+  object.T_world_obj = body.T_world_obj;
+  object.cov_T_world_obj = body.cov_T_world_obj;
+  object.M_world = body.M_world;
+  object.cov_M_world = body.cov_M_world;
+  object.points = static_cast<int>(body.members.size());
+  object.first_seen = body.first_seen;
+  object.last_seen = body.last_seen;
+  object.centroid_world = body.T_world_obj * body.centroid_obj;
+  object.extent_m = body.extent_m;
+  outline_of(body, 1.0, object.outline, object.outline_size);
+}
+
+void Pipeline::State::publish() {
+  FrameReport& report = result.report;
+  report[Stage::ego_motion].outcome = ego_outcome;
+  report.sigma_px = sigma_px;
+  const bool first = track_of_pair.empty() && ego_outcome == StageOutcome::not_run;
+  result.T_world_cam = T_world_cam;
+  result.cov_T_world_cam = cov_T_world_cam;
+  result.T_curr_prev = ego.H_curr_prev;
+  result.cov_T_curr_prev = world.cov_H_static;
+  result.world_confidence = world_confidence;
+  result.reset_counter = reset_counter;
+  result.pose_valid = first || ego_found();
+  const EgoMotionConfig& c = config.ego_motion;
+  const bool weak =
+      static_cast<int>(fixed.size()) < c.degraded_static_points || world_confidence < c.degraded_confidence;
+  result.state = first          ? VisionState::init
+                 : !ego_found() ? VisionState::lost
+                 : weak         ? VisionState::degraded
+                                : VisionState::tracking;
+  result.objects_size = 0;
+  for (const MovingBody& body : registry.bodies()) {
+    if (result.objects_size == kMaxObjects) break;
+    publish_object(body, result.objects[static_cast<std::size_t>(result.objects_size++)]);
+  }
+  views.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    views.push_back({pairs[i].track, pairs[i].curr, owner[i], pairs[i].age});
+    report.points_static += owner[i] == kWorldBody;
+    report.points_moving += owner[i] > kWorldBody;
+    report.points_outlier += owner[i] == kNoBody;
+  }
+}
+
+}  // namespace pelorus

@@ -1,0 +1,241 @@
+// Steps of the pipeline that concern the static scene and the vehicle's own motion.
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/rigid_fit.h"
+#include "core/motion/stereo_transfer.h"
+#include "core/pipeline/state.h"
+
+namespace pelorus {
+
+void Pipeline::State::begin(const StereoFrame& frame) {
+  result = FrameResult{};
+  result.seq = frame.seq;
+  result.capture_time = frame.capture_time;
+  result.reset_counter = reset_counter;
+  ego_outcome = StageOutcome::not_run;
+  world = WorldStep{};
+  world.time = frame.capture_time;
+  world.seed = frame.seq;
+  if (started) {
+    world.dt_s = std::max(1e-4, seconds(frame.capture_time - last_time));
+    result.report.frames_missed = static_cast<std::int32_t>(frame.seq - last_seq) - 1;
+  }
+  world.T_world_prev = T_world_cam;
+  // Constant velocity over the true time between frames, so that a gap of a few frames is predicted as such.
+  world.T_world_curr = twist_known ? T_world_cam * se3_exp(twist_cam * world.dt_s) : T_world_cam;
+  registry.predict(world.T_world_prev, world.T_world_curr, world.dt_s);
+  predictions.clear();
+  const bool predict = config.steps.motion_prediction;
+  predictions.push_back(
+      {kWorldBody, predict ? Rigid3(world.T_world_curr.inverse() * world.T_world_prev) : Rigid3::Identity()});
+  for (const MovingBody& body : registry.bodies()) {
+    predictions.push_back({body.id, predict ? body.H_curr_prev : Rigid3::Identity()});
+  }
+  last_time = frame.capture_time;
+  last_seq = frame.seq;
+}
+
+void Pipeline::State::match_points(const StereoFrame& frame) {
+  for (Track& track : front_end.tracks()) track.sigma_px = sigma_px;
+  pairs = front_end.run(frame, predictions);
+  track_of_pair.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    track_of_pair.push_back(&front_end.track_of_pair(static_cast<PointIndex>(i)));
+  }
+  roles.assign(pairs.size(), PointRole::unknown);
+  chi2_static.assign(pairs.size(), 0.0);
+  owner.assign(pairs.size(), kNoBody);
+  result.report.points_tracked = static_cast<std::int32_t>(pairs.size());
+  result.report[Stage::front_end].outcome = pairs.empty() ? StageOutcome::too_few_points : StageOutcome::ok;
+}
+
+// Ego motion and known bodies compete with the groups that rigidity proposes, on equal terms.
+void Pipeline::State::partition_coarsely() {
+  if (!started) return;
+  open.resize(pairs.size());
+  for (std::size_t i = 0; i < pairs.size(); ++i) open[i] = static_cast<PointIndex>(i);
+  std::array<Rigid3, kMaxObjects + 1> priors;
+  std::size_t count = 0;
+  for (const BodyPrediction& p : predictions) {
+    if (count < priors.size()) priors[count++] = p.H_curr_prev;
+  }
+  const Grouping::Options options{config.steps.rigidity_grouping, config.steps.motion_reassignment};
+  coarse = grouping.run(rig, pairs, open, {priors.data(), count}, world.seed, options);
+  result.report.groups = static_cast<std::int32_t>(coarse.groups.size());
+  result.report[Stage::partition].outcome = coarse.groups.empty() ? StageOutcome::no_agreement : StageOutcome::ok;
+}
+
+void Pipeline::State::find_world() {
+  if (!started) return;
+  std::optional<Rigid3> H_predicted;
+  if (twist_known) H_predicted = predictions.front().H_curr_prev;
+  const StaticChoice choice =
+      choose_static_group(rig, pairs, coarse, H_predicted, config.static_group, config.steps.static_criteria);
+  world_confidence = choice.world_confidence;
+  if (choice.group < 0) {
+    ego_outcome = StageOutcome::no_agreement;
+    return;
+  }
+  const Group& group = coarse.groups[static_cast<std::size_t>(choice.group)];
+  if (static_cast<int>(group.members.size()) < config.ego_motion.min_static_points) {
+    ego_outcome = StageOutcome::too_few_points;
+    return;
+  }
+  ego = fit_motion(group.members, group.H_curr_prev);
+  ego_outcome = ego.outcome == StageOutcome::not_converged ? StageOutcome::ok : ego.outcome;
+  for (const PointIndex i : group.members) roles[static_cast<std::size_t>(i)] = PointRole::fixed;
+}
+
+MotionFit Pipeline::State::fit_motion(std::span<const PointIndex> members, const Rigid3& H_start) {
+  MotionFit fit = two_frame_ba.run(rig, pairs, members, H_start);
+  if (config.steps.bundle_adjustment || fit.outcome == StageOutcome::too_few_points) return fit;
+  // Ablation: the paper's alignment of the two clouds, on the points that agree.
+  std::vector<PointMatch> matches;
+  for (const PointIndex i : members) {
+    const PointPair& pair = pairs[static_cast<std::size_t>(i)];
+    if (transfer_chi2(rig, fit.H_curr_prev, pair) < kChi2_3dof_999) {
+      matches.push_back({pair.prev.p_cam, pair.curr.p_cam, 1.0});
+    }
+  }
+  if (const auto aligned = fit_rigid(matches)) fit.H_curr_prev = *aligned;
+  return fit;
+}
+
+void Pipeline::State::split_static_from_moving() {
+  if (!ego_found()) return;
+  StaticMotions motions = static_motions;
+  for (int j = std::min(motions.size, kPastFrames); j > 0; --j) {
+    motions.T_curr_past[static_cast<std::size_t>(j)] =
+        ego.H_curr_prev * motions.T_curr_past[static_cast<std::size_t>(j - 1)];
+  }
+  motions.T_curr_past[0] = ego.H_curr_prev;
+  motions.size = std::min(motions.size + 1, kPastFrames + 1);
+  if (config.steps.repartition) {
+    repartition(rig, pairs, motions, config.repartition, roles, chi2_static);
+  } else {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+      chi2_static[i] = static_chi2(rig, pairs[i], motions);
+      if (roles[i] == PointRole::unknown) roles[i] = PointRole::moving;
+    }
+  }
+  static_motions = motions;
+  collect_fixed();
+}
+
+void Pipeline::State::collect_fixed() {
+  fixed.clear();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (roles[i] == PointRole::fixed) fixed.push_back(static_cast<PointIndex>(i));
+  }
+}
+
+// The static motion is estimated anew after each filter (6.1 step 6); suspects are then tested against it.
+void Pipeline::State::filter_static_and_moving() {
+  if (!ego_found()) return;
+  net.build(pairs, roles);
+  if (config.steps.net_filter && net_filter(net, pairs, roles) > 0) collect_fixed();
+  if (static_cast<int>(fixed.size()) < config.ego_motion.min_static_points) {
+    ego_outcome = StageOutcome::too_few_points;
+    return;
+  }
+  const MotionFit refined = fit_motion(fixed, ego.H_curr_prev);
+  if (refined.outcome != StageOutcome::degenerate) ego = refined;
+  if (config.steps.ray_filter) {
+    (void)ray_filter(rig, net, pairs, chi2_static, config.ray_filter, roles);
+  }
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (roles[i] != PointRole::suspect) continue;
+    const bool fits = transfer_chi2(rig, ego.H_curr_prev, pairs[i]) < config.repartition.return_chi2;
+    roles[i] = fits && pairs[i].previous_body <= kWorldBody ? PointRole::fixed : PointRole::outlier;
+  }
+  collect_fixed();
+  static_motions.T_curr_past[0] = ego.H_curr_prev;
+  learn_sigma();
+}
+
+// The median of the static residuals tells the pixel deviation; the median of 3 degrees of freedom is 2.366.
+void Pipeline::State::learn_sigma() {
+  std::vector<double> values;
+  for (const PointIndex i : fixed) {
+    values.push_back(transfer_chi2(rig, ego.H_curr_prev, pairs[static_cast<std::size_t>(i)]));
+  }
+  if (values.size() < 20) return;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  const double measured_px = sigma_px * std::sqrt(*middle / 2.366);
+  const EgoMotionConfig& c = config.ego_motion;
+  const double rate = twist_known ? c.sigma_learning_rate : 0.5;
+  sigma_px = std::clamp(sigma_px + rate * (measured_px - sigma_px), c.min_sigma_px, c.max_sigma_px);
+}
+
+void Pipeline::State::refine_ego_motion() {
+  if (started && !ego_found()) {
+    lose_track();
+    return;
+  }
+  if (!started) {
+    static_window.clear();
+    return;
+  }
+  const Rigid3 T_cam_world_prev = T_world_cam.inverse();
+  Rigid3 T_cam_world = ego.H_curr_prev * T_cam_world_prev;
+  Matrix6d cov_H = ego.cov_H;
+  if (config.steps.static_window) {
+    if (static_window.frames() == 0) {
+      observations.clear();
+      for (const PointIndex i : fixed) {
+        const PointPair& pair = pairs[static_cast<std::size_t>(i)];
+        observations.push_back({pair.track, pair.prev.z_px, pair.sigma_px});
+      }
+      const auto dt = Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
+      static_window.add_frame(rig, world.time + dt, T_cam_world_prev, T_world_cam, observations);
+    }
+    observations.clear();
+    for (const PointIndex i : fixed) {
+      const PointPair& pair = pairs[static_cast<std::size_t>(i)];
+      observations.push_back({pair.track, pair.curr.z_px, pair.sigma_px});
+    }
+    T_cam_world = ego.H_curr_prev * static_window.T_cam_body();
+    static_window.add_frame(rig, world.time, T_cam_world, T_cam_world.inverse(), observations);
+    const StageOutcome outcome = static_window.adjust(rig);
+    result.report[Stage::static_window].outcome = outcome;
+    if (outcome == StageOutcome::ok) {
+      T_cam_world = static_window.T_cam_body();
+      ego.H_curr_prev = T_cam_world * static_window.T_cam_body_previous().inverse();
+      cov_H = static_window.cov_H_curr_prev();
+      static_motions.T_curr_past[0] = ego.H_curr_prev;
+    }
+  }
+  // Step by step, and drawn towards where the window sees the camera: the first has the smaller noise from frame to
+  // frame, the second does not drift.
+  const Rigid3 T_world_stepped = T_world_cam * ego.H_curr_prev.inverse();
+  const Vector6d pull = config.ego_motion.window_pull * se3_log(T_cam_world.inverse() * T_world_stepped.inverse());
+  T_world_cam = orthonormalized(se3_exp(pull) * T_world_stepped);
+  world.T_world_curr = T_world_cam;
+  // The window may have moved the previous pose a little: bodies are carried from there.
+  world.T_world_prev = T_world_cam * ego.H_curr_prev;
+  world.cov_H_static = cov_H;
+  const Matrix6d Ad = adjoint(T_world_cam);
+  cov_T_world_cam += Ad * cov_H * Ad.transpose();
+  const Vector6d twist = se3_log(ego.H_curr_prev.inverse()) / world.dt_s;
+  twist_cam = twist_known ? Vector6d(twist_cam + 0.7 * (twist - twist_cam)) : twist;
+  twist_known = true;
+  lost = false;
+}
+
+// Too little to stand on: the result says so; the pose goes on from the last one once points agree again.
+void Pipeline::State::lose_track() {
+  if (!lost) {
+    ++reset_counter;
+    cov_T_world_cam *= config.ego_motion.lost_inflation;
+    cov_T_world_cam.diagonal().array() += 1e-6;
+  }
+  lost = true;
+  twist_known = false;
+  static_window.clear();
+  static_motions.size = 0;
+}
+
+}  // namespace pelorus

@@ -1,0 +1,78 @@
+#pragma once
+// What Pipeline::step works on; one member function per step of the method, in the order of the step.
+
+#include <optional>
+
+#include "core/pipeline/pipeline.h"
+
+namespace pelorus {
+
+struct Pipeline::State {
+  State(const PipelineConfig& config, const StereoRig& rig);
+
+  void begin(const StereoFrame& frame);
+  void match_points(const StereoFrame& frame);  // 5.1: the unified matched set, two clouds
+  void partition_coarsely();                    // 5.1, 6.1 steps 2-3
+  void find_world();                            // 5.2, 6.1 step 4
+  void split_static_from_moving();              // 5.2.1, step 5
+  void filter_static_and_moving();              // 5.2.2, 5.2.3, step 6
+  void refine_ego_motion();                     // over a window
+  void follow_bodies();                         // 6.2 step 2
+  void find_new_bodies();                       // 6.1 step 7, 5.2.4
+  void settle_bodies();                         // section 4: trajectories; registry
+  void start_points();
+  void lose_track();
+  void publish();
+
+  [[nodiscard]] bool ego_found() const { return ego_outcome == StageOutcome::ok; }
+  [[nodiscard]] MotionFit fit_motion(std::span<const PointIndex> members, const Rigid3& H_start);
+  void collect_fixed();
+  void learn_sigma();
+  void drop_unexplained();
+  void publish_object(const MovingBody& body, ObjectState& object) const;
+  void outline_of(const MovingBody& body, double grow, std::array<OutlinePoint, 16>& outline, int& size) const;
+
+  PipelineConfig config;
+  StereoRig rig;
+  FrontEnd front_end;
+  Grouping grouping;
+  Grouping moving_grouping;
+  TwoFrameBa two_frame_ba;
+  StaticNet net;
+  BodyWindow static_window;
+  Registry registry;
+
+  // Of the present step.
+  PointPairs pairs;
+  std::vector<const Track*> track_of_pair;
+  Partition coarse;
+  std::vector<PointRole> roles;
+  std::vector<double> chi2_static;
+  std::vector<BodyId> owner;
+  std::vector<PointIndex> fixed;
+  std::vector<PointIndex> open;
+  std::vector<BodyPrediction> predictions;
+  MotionFit ego;
+  StageOutcome ego_outcome = StageOutcome::not_run;
+  WorldStep world;
+  double world_confidence = 0;
+
+  // Remembered.
+  bool started = false;
+  Timestamp last_time;
+  std::uint64_t last_seq = 0;
+  Rigid3 T_world_cam = Rigid3::Identity();
+  Matrix6d cov_T_world_cam = Matrix6d::Zero();
+  Vector6d twist_cam = Vector6d::Zero();  // per second: T_world_cam <- T_world_cam * exp(twist dt)
+  bool twist_known = false;
+  bool lost = false;
+  StaticMotions static_motions;
+  double sigma_px = 0.25;
+  int reset_counter = 0;
+  std::vector<WindowObservation> observations;
+  std::vector<TrackId> rejected;
+  std::vector<PointView> views;
+  FrameResult result;
+};
+
+}  // namespace pelorus
