@@ -222,6 +222,7 @@ void FrontEnd::build_pairs() {
   for (std::size_t t = 0; t < tracks_.size(); ++t) {
     const Track& track = tracks_[t];
     PointPair pair;
+    pair.past.fill(Eigen::Vector3d::Zero());
     pair.track = track.id;
     pair.prev.z_px = track.past_px[0];
     pair.prev.p_cam = rig_.triangulate(track.past_px[0]);

@@ -75,6 +75,7 @@ void BodyWindow::add_frame(const StereoRig& rig, Timestamp time, const Rigid3& T
                                   [](const BodyPoint& p, TrackId t) { return p.track < t; });
     if (place == points_.end() || place->track != observation.track) {
       BodyPoint point;
+      point.z_px.fill(Eigen::Vector3d::Zero());
       point.track = observation.track;
       point.p_body = T_body_cam * rig.triangulate(observation.z_px);
       place = points_.insert(place, point);
