@@ -33,7 +33,6 @@ Features ours(const cv::Mat& image, int count, bool upright) {
   config.threshold = 1.0F;
   config.max_points = count;
   config.upright = upright;
-  if (const char* o = std::getenv("OCT")) config.octaves = std::atoi(o);
   Surf surf(config, image.cols, image.rows);
   const auto points = surf.detect({image.data, image.cols, image.rows, static_cast<std::ptrdiff_t>(image.step)});
   Features f{{points.begin(), points.end()}, std::vector<SurfDescriptor>(points.size())};
@@ -82,7 +81,7 @@ struct Score {
 bool agrees(const Placed& where, const SurfPoint& a, const SurfPoint& b) {
   const double tolerance_px = 2.5;
   const double distance = (where.p - Eigen::Vector2d(b.u_px, b.v_px)).norm();
-  return distance < tolerance_px && std::abs(std::log2(where.zoom * a.scale / b.scale)) < 0.6;
+  return distance < tolerance_px && std::abs(std::log2(where.zoom * static_cast<double>(a.scale / b.scale))) < 0.6;
 }
 
 Score score(const Features& a, const Features& b, const Eigen::Matrix3d& H, const cv::Size& size) {
