@@ -156,7 +156,8 @@ Result<> check_pair(const SourcePair& pair, const Rectifier& rectifier, const st
   std::printf("rows        offset %+.2f px, half within %.2f px (%d patches of this pair)\n", rows.median_px,
               rows.spread_px, rows.patches);
   if (rows.patches < 20) {
-    warnings.push_back("too little in common to judge the rows: try another pair, and check that the cameras are not swapped");
+    warnings.push_back(
+        "too little in common to judge the rows: try another pair, and check that the cameras are not swapped");
   } else if (std::abs(rows.median_px) > 0.5 || rows.spread_px > 0.7) {
     warnings.push_back("the rows of the rectified pair do not agree: this calibration does not fit these images");
   }

@@ -20,8 +20,8 @@ struct DegreesOf {
 struct ConfigField {
   std::string_view section;
   std::string_view key;
-  std::variant<bool*, int*, double*, DegreesOf> value;  // into the PipelineConfig given to config_fields
-  double low = 0;                                       // inclusive, in the unit of the key; unused for switches
+  std::variant<bool*, int*, float*, double*, DegreesOf> value;  // into the PipelineConfig given to config_fields
+  double low = 0;  // inclusive, in the unit of the key; unused for switches
   double high = 0;
 };
 

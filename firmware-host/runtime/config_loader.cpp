@@ -158,6 +158,7 @@ class FileReader {
 
   static void store(const ConfigField& field, double value) {
     if (double* const* number = std::get_if<double*>(&field.value)) **number = value;
+    if (float* const* number = std::get_if<float*>(&field.value)) **number = static_cast<float>(value);
     if (const DegreesOf* angle = std::get_if<DegreesOf>(&field.value)) {
       *angle->radians = value * std::numbers::pi / 180;
     }

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <numbers>
 #include <set>
+#include <sstream>
 #include <string>
 
 #include "firmware-host/runtime/config_fields.h"
@@ -37,6 +39,7 @@ class ConfigFile : public ::testing::Test {
 double value_of(const ConfigField& field) {
   if (bool* const* flag = std::get_if<bool*>(&field.value)) return **flag ? 1 : 0;
   if (int* const* whole = std::get_if<int*>(&field.value)) return **whole;
+  if (float* const* number = std::get_if<float*>(&field.value)) return static_cast<double>(**number);
   if (double* const* number = std::get_if<double*>(&field.value)) return **number;
   return *std::get<DegreesOf>(field.value).radians * 180 / std::numbers::pi;
 }
@@ -46,6 +49,7 @@ void move_value(const ConfigField& field) {
   if (bool* const* flag = std::get_if<bool*>(&field.value)) **flag = !**flag;
   const double other = value_of(field) == field.low ? field.high : field.low;
   if (int* const* whole = std::get_if<int*>(&field.value)) **whole = static_cast<int>(other);
+  if (float* const* number = std::get_if<float*>(&field.value)) **number = static_cast<float>(other);
   if (double* const* number = std::get_if<double*>(&field.value)) **number = other;
   if (const auto* angle = std::get_if<DegreesOf>(&field.value)) *angle->radians = other * std::numbers::pi / 180;
 }
@@ -62,7 +66,7 @@ TEST(ShippedConfig, RepeatsEveryDefault) {
   const std::vector<ConfigField> expected = config_fields(defaults);
   const std::vector<ConfigField> loaded = config_fields(moved);
   for (std::size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_NEAR(value_of(loaded[i]), value_of(expected[i]), 1e-12) << name_of(expected[i]);
+    EXPECT_FLOAT_EQ(value_of(loaded[i]), value_of(expected[i])) << name_of(expected[i]);
   }
 }
 
@@ -131,6 +135,31 @@ TEST_F(ConfigFile, SwitchTakesTrueOrFalseOnly) {
   for (const std::string value : {"yes", "1", "\"true\"", "[true]", "", "TRUE!"}) {
     const std::string message = problems_of("steps:\n  net_filter: " + value + "\n");
     EXPECT_NE(message.find("write true or false"), std::string::npos) << value << ": " << message;
+  }
+}
+
+TEST_F(ConfigFile, NumbersOutOfRangeOrOfAnotherTypeAreRefused) {
+  for (const ConfigField& field : config_fields(config_)) {
+    if (std::holds_alternative<bool*>(field.value)) continue;
+    const double before = value_of(field);
+    const auto file = [&](const std::string& value) {
+      return std::string(field.section) + ":\n  " + std::string(field.key) + ": " + value + "\n";
+    };
+    for (double beyond : {field.low - 1, field.high + 1, field.high * 10 + 10}) {
+      const std::string message = problems_of(file(std::to_string(static_cast<long long>(std::floor(beyond)))));
+      EXPECT_NE(message.find("out of range"), std::string::npos) << name_of(field) << ": " << message;
+      EXPECT_NE(message.find(line(2)), std::string::npos) << message;
+    }
+    for (const std::string wrong : {"1.5x", "true", "\"3\"", "[3]", "0x3", "nan", "inf", "1e999", ""}) {
+      EXPECT_NE(problems_of(file(wrong)), "none") << name_of(field) << ": " << wrong;
+    }
+    if (std::holds_alternative<int*>(field.value)) {
+      EXPECT_NE(problems_of(file(std::to_string(field.low + 0.5))).find("a whole number"), std::string::npos);
+    }
+    EXPECT_EQ(value_of(field), before) << name_of(field) << " changed though refused";
+    std::ostringstream highest;
+    highest << field.high;
+    EXPECT_TRUE(apply(file(highest.str())).ok()) << name_of(field) << " at its upper limit";
   }
 }
 
