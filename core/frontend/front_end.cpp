@@ -252,6 +252,11 @@ void FrontEnd::settle(std::span<const BodyId> body_of_pair, std::span<const Body
   renew_references();
 }
 
+void FrontEnd::set_sigma(double sigma_px) {
+  for (Track& track : tracks_) track.sigma_px = sigma_px;
+  for (PointPair& pair : pairs_) pair.sigma_px = sigma_px;
+}
+
 void FrontEnd::drop(std::span<const TrackId> tracks) {
   std::erase_if(tracks_, [&](const Track& t) { return std::find(tracks.begin(), tracks.end(), t.id) != tracks.end(); });
 }

@@ -86,6 +86,9 @@ class FrontEnd {
   // Forgets tracks for good (they proved to be outliers).
   void drop(std::span<const TrackId> tracks);
 
+  // Pixel deviation of all points and of the present pairs.
+  void set_sigma(double sigma_px);
+
   [[nodiscard]] std::span<const Track> tracks() const { return tracks_; }
   [[nodiscard]] std::span<Track> tracks() { return tracks_; }
   [[nodiscard]] Track& track_of_pair(PointIndex pair);

@@ -1,6 +1,7 @@
 #include "core/motion/repartition.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/motion/stereo_transfer.h"
 
@@ -10,9 +11,10 @@ double static_chi2(const StereoRig& rig, const PointPair& pair, const StaticMoti
   double chi2 = transfer_chi2(rig, motions.T_curr_past[0], pair);
   const int longest = std::min(pair.past_size, motions.size - 1);
   if (longest > 0) {
+    // A patch drifts over frames like a random walk, so its deviation grows with the root of their number.
     const Eigen::Vector3d& z_then_px = pair.past[static_cast<std::size_t>(longest - 1)];
     chi2 = std::max(chi2, transfer_chi2(rig, motions.T_curr_past[static_cast<std::size_t>(longest)], z_then_px,
-                                        pair.curr.z_px, pair.sigma_px));
+                                        pair.curr.z_px, pair.sigma_px * std::sqrt(1.0 + longest)));
   }
   return chi2;
 }

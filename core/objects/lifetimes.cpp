@@ -11,31 +11,50 @@
 
 namespace pelorus {
 
+// Displacement since birth, in deviations and in pixels: beyond noise, and beyond any systematic error of matching.
+bool Registry::moved_significantly(const StereoRig& rig, const WorldStep& world, const MovingBody& body) const {
+  const Eigen::Vector3d p_now_world = body.T_world_obj.translation();
+  const Eigen::Vector3d moved_world = p_now_world - body.birth_centroid_world;
+  const Rigid3 T_cam_world = world.T_world_curr.inverse();
+  const Eigen::Vector3d p_now = T_cam_world * p_now_world;
+  const Eigen::Vector3d p_then = T_cam_world * body.birth_centroid_world;
+  if (!(p_now.z() > 0.05) || !(p_then.z() > 0.05)) return false;
+  if ((rig.project(p_now) - rig.project(p_then)).norm() < config_.confirm_move_px) return false;
+  Eigen::Matrix<double, 3, 6> J;
+  J << Eigen::Matrix3d::Identity(), -skew(p_now_world);
+  const Eigen::Matrix3d cov = J * body.cov_T_world_obj * J.transpose() + 1e-12 * Eigen::Matrix3d::Identity();
+  return moved_world.dot(cov.ldlt().solve(moved_world)) > config_.confirm_sigmas * config_.confirm_sigmas;
+}
+
+// A small group on or beside a confirmed body is a part of it that bends (a cyclist's leg), not a second object.
+bool Registry::part_of_another(const MovingBody& body) const {
+  const Eigen::Vector3d center = body.T_world_obj * body.centroid_obj;
+  return std::any_of(bodies_.begin(), bodies_.end(), [&](const MovingBody& other) {
+    if (other.id == body.id || other.phase == ObjectPhase::tentative || !other.measured) return false;
+    const double reach_m = 0.75 * other.extent_m.norm();
+    return (other.T_world_obj * other.centroid_obj - center).norm() < reach_m &&
+           body.members.size() < other.members.size();
+  });
+}
+
 // Likelihood of the body's own motion against "it is static" (Wedel et al. 2009), summed over points and frames.
-void Registry::weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const double> chi2_static,
-                              const WorldStep& world, MovingBody& body) const {
-  double shift2_px2 = 0;
+void Registry::weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
+                              std::span<const double> chi2_static, const WorldStep& world, MovingBody& body) const {
   for (const PointIndex i : body.members) {
-    const double own = transfer_chi2(rig, body.H_curr_prev, pairs[static_cast<std::size_t>(i)]);
-    const double ratio = 0.5 * (chi2_static[static_cast<std::size_t>(i)] - own);
+    const auto place = static_cast<std::size_t>(i);
+    const double ratio = 0.5 * (chi2_static[place] - transfer_chi2(rig, body.H_curr_prev, pairs[place]));
     body.evidence += std::clamp(ratio, -config_.evidence_cap, config_.evidence_cap);
   }
   if (body.phase != ObjectPhase::tentative) return;
-  const Eigen::Vector3d center_obj = Eigen::Vector3d::Zero();
-  const Eigen::Vector3d moved_world = body.T_world_obj * center_obj - body.birth_centroid_world;
-  const Rigid3 T_curr_world = world.T_world_curr.inverse();
-  const Eigen::Vector3d p_now = T_curr_world * (body.T_world_obj * center_obj);
-  const Eigen::Vector3d p_then = T_curr_world * body.birth_centroid_world;
-  if (p_now.z() > 0.05 && p_then.z() > 0.05) shift2_px2 = (rig.project(p_now) - rig.project(p_then)).squaredNorm();
-  Eigen::Matrix<double, 3, 6> J;
-  J << Eigen::Matrix3d::Identity(), -skew(body.T_world_obj * center_obj);
-  const Eigen::Matrix3d cov = J * body.cov_T_world_obj * J.transpose() + 1e-12 * Eigen::Matrix3d::Identity();
-  const double significance = std::sqrt(std::max(0.0, moved_world.dot(cov.ldlt().solve(moved_world))));
+  if (static_inside(pairs, roles, body.members) > config_.max_static_inside) {
+    body.phase = ObjectPhase::ended;
+    return;
+  }
   const bool enough = body.frames_measured >= config_.confirm_frames &&
                       static_cast<int>(body.members.size()) >= config_.min_points &&
                       spread_px(pairs, body.members) >= config_.min_spread_px;
-  if (enough && body.evidence > config_.confirm_evidence && significance > config_.confirm_sigmas &&
-      shift2_px2 > config_.confirm_move_px * config_.confirm_move_px) {
+  if (enough && body.evidence > config_.confirm_evidence && moved_significantly(rig, world, body) &&
+      !part_of_another(body)) {
     body.phase = ObjectPhase::confirmed;
   }
 }

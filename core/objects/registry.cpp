@@ -61,7 +61,7 @@ void Registry::claim(const StereoRig& rig, PointPairs pairs, std::span<const Poi
   }
 }
 
-void Registry::adopt(const StereoRig& rig, PointPairs pairs, const Partition& groups,
+void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Partition& groups,
                      std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
                      std::span<BodyId> owner) {
   std::vector<Rigid3> expected_T_cam_obj;
@@ -94,6 +94,7 @@ void Registry::adopt(const StereoRig& rig, PointPairs pairs, const Partition& gr
       }
     }
     if (spread_px(pairs, group.members) < config_.min_spread_px) continue;
+    if (static_inside(pairs, roles, group.members) > config_.max_static_inside) continue;
     if (static_cast<int>(bodies_.size()) < kMaxObjects) give_birth(rig, pairs, group, world, owner);
   }
 }
@@ -144,14 +145,14 @@ void Registry::resume(const StereoRig& rig, PointPairs pairs, const Group& group
   body.window.add_frame(rig, world.time + dt, body.T_cam_obj, world.T_world_prev, observations_);
 }
 
-void Registry::settle(const StereoRig& rig, PointPairs pairs, std::span<const double> chi2_static,
-                      std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
-                      std::span<BodyId> owner) {
+void Registry::settle(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
+                      std::span<const double> chi2_static, std::span<const Track* const> track_of_pair,
+                      const WorldStep& world, const RegistrySteps& steps, std::span<BodyId> owner) {
   for (MovingBody& body : bodies_) {
     if (body.measured) {
       std::sort(body.members.begin(), body.members.end());
       measure(rig, pairs, track_of_pair, world, steps, body);
-      weigh_evidence(rig, pairs, chi2_static, world, body);
+      weigh_evidence(rig, pairs, roles, chi2_static, world, body);
     } else {
       coast(world, body);
     }

@@ -12,6 +12,7 @@ namespace pelorus {
 
 struct RegistryConfig {
   int min_points = 6;               // of a birth
+  double max_static_inside = 0.6;   // static points inside its outline, per member: more, and it is no one body
   double min_spread_px = 4.0;       // deviation of its points along their second axis in the image
   int confirm_frames = 3;           // measured frames before a body is an object
   double confirm_evidence = 150.0;  // log-likelihood ratio of own motion against static, summed
@@ -57,13 +58,13 @@ class Registry {
              std::span<const double> chi2_static, const WorldStep& world, const RegistrySteps& steps,
              std::span<BodyId> owner);
   // New groups among the moving points that no body claimed: identified, re-identified or registered.
-  void adopt(const StereoRig& rig, PointPairs pairs, const Partition& groups,
+  void adopt(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Partition& groups,
              std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
              std::span<BodyId> owner);
   // Poses, windows, evidence, phases; merges and ends. Releases pairs of bodies that ended in `owner`.
-  void settle(const StereoRig& rig, PointPairs pairs, std::span<const double> chi2_static,
-              std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
-              std::span<BodyId> owner);
+  void settle(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
+              std::span<const double> chi2_static, std::span<const Track* const> track_of_pair, const WorldStep& world,
+              const RegistrySteps& steps, std::span<BodyId> owner);
 
   [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
 
@@ -71,8 +72,10 @@ class Registry {
   void measure(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
                const WorldStep& world, const RegistrySteps& steps, MovingBody& body);
   void remember_points(PointPairs pairs, std::span<const Track* const> track_of_pair, MovingBody& body);
-  void weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const double> chi2_static,
-                      const WorldStep& world, MovingBody& body) const;
+  void weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
+                      std::span<const double> chi2_static, const WorldStep& world, MovingBody& body) const;
+  [[nodiscard]] bool moved_significantly(const StereoRig& rig, const WorldStep& world, const MovingBody& body) const;
+  [[nodiscard]] bool part_of_another(const MovingBody& body) const;
   void coast(const WorldStep& world, MovingBody& body) const;
   void give_birth(const StereoRig& rig, PointPairs pairs, const Group& group, const WorldStep& world,
                   std::span<BodyId> owner);

@@ -3,6 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "core/geometry/hull.h"
 
 namespace pelorus {
 
@@ -17,6 +20,19 @@ double spread_px(PointPairs pairs, std::span<const PointIndex> members) {
   }
   scatter /= static_cast<double>(members.size());
   return std::sqrt(std::max(0.0, scatter.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff()));
+}
+
+double static_inside(PointPairs pairs, std::span<const PointRole> roles, std::span<const PointIndex> members) {
+  std::vector<Eigen::Vector2d> points;
+  for (const PointIndex i : members) points.push_back(pairs[static_cast<std::size_t>(i)].curr.z_px.head<2>());
+  std::array<Eigen::Vector2d, 24> outline;
+  const int corners = convex_outline(points, outline);
+  const std::span<const Eigen::Vector2d> hull(outline.data(), static_cast<std::size_t>(corners));
+  int inside = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    inside += roles[i] == PointRole::fixed && inside_outline(hull, pairs[i].curr.z_px.head<2>());
+  }
+  return static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(1, members.size()));
 }
 
 }  // namespace pelorus

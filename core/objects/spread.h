@@ -1,5 +1,5 @@
 #pragma once
-// Spread of a body's points over the image. Pure. O(members).
+// How a body's points lie in the image among the others. Pure. O(points).
 
 #include "core/model/stage_data.h"
 
@@ -7,5 +7,10 @@ namespace pelorus {
 
 // Deviation [px] of the points along their second principal axis: points on a line fix no rotation.
 [[nodiscard]] double spread_px(PointPairs pairs, std::span<const PointIndex> members);
+
+// Static points inside the convex outline of the members, per member. A body hides the scene behind it, so its outline
+// holds few; points scattered over the scene that happen to agree hold many.
+[[nodiscard]] double static_inside(PointPairs pairs, std::span<const PointRole> roles,
+                                   std::span<const PointIndex> members);
 
 }  // namespace pelorus

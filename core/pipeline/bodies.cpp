@@ -40,7 +40,7 @@ void Pipeline::State::find_new_bodies() {
   const Partition& groups = moving_grouping.run(rig, pairs, open, {}, world.seed + 1, options);
   const RegistrySteps steps{on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window,
                             on.reidentification};
-  registry.adopt(rig, pairs, groups, track_of_pair, world, steps, owner);
+  registry.adopt(rig, pairs, roles, groups, track_of_pair, world, steps, owner);
 }
 
 void Pipeline::State::settle_bodies() {
@@ -48,7 +48,7 @@ void Pipeline::State::settle_bodies() {
   const MethodSteps& on = config.steps;
   const RegistrySteps steps{on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window,
                             on.reidentification};
-  registry.settle(rig, pairs, chi2_static, track_of_pair, world, steps, owner);
+  registry.settle(rig, pairs, roles, chi2_static, track_of_pair, world, steps, owner);
   result.report[Stage::objects].outcome = StageOutcome::ok;
 }
 

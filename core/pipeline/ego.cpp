@@ -38,7 +38,7 @@ void Pipeline::State::begin(const StereoFrame& frame) {
 }
 
 void Pipeline::State::match_points(const StereoFrame& frame) {
-  for (Track& track : front_end.tracks()) track.sigma_px = sigma_px;
+  front_end.set_sigma(sigma_px);
   pairs = front_end.run(frame, predictions);
   track_of_pair.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -152,22 +152,34 @@ void Pipeline::State::filter_static_and_moving() {
   }
   collect_fixed();
   static_motions.T_curr_past[0] = ego.H_curr_prev;
-  learn_sigma();
+  learn_sigma(config.ego_motion.sigma_learning_rate);
 }
 
-// The median of the static residuals tells the pixel deviation; the median of 3 degrees of freedom is 2.366.
-void Pipeline::State::learn_sigma() {
-  std::vector<double> values;
-  for (const PointIndex i : fixed) {
-    values.push_back(transfer_chi2(rig, ego.H_curr_prev, pairs[static_cast<std::size_t>(i)]));
+// The median residual tells the pixel deviation (the median of 3 degrees of freedom is 2.366). Of all points that no
+// body owns, not of the static ones only: those were chosen by this very deviation, and would shrink it for ever.
+void Pipeline::State::learn_sigma(double rate) {
+  residuals.clear();
+  for (const PointPair& pair : pairs) {
+    if (pair.previous_body <= kWorldBody) residuals.push_back(transfer_chi2(rig, ego.H_curr_prev, pair));
   }
-  if (values.size() < 20) return;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
+  if (residuals.size() < 20) return;
+  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
+  std::nth_element(residuals.begin(), middle, residuals.end());
   const double measured_px = sigma_px * std::sqrt(*middle / 2.366);
   const EgoMotionConfig& c = config.ego_motion;
-  const double rate = twist_known ? c.sigma_learning_rate : 0.5;
   sigma_px = std::clamp(sigma_px + rate * (measured_px - sigma_px), c.min_sigma_px, c.max_sigma_px);
+}
+
+// The first step of all has only an assumed deviation: it is taken once to measure it, then in earnest.
+void Pipeline::State::measure_noise() {
+  if (!started || noise_known) return;
+  partition_coarsely();
+  find_world();
+  if (!ego_found()) return;
+  learn_sigma(1.0);
+  noise_known = true;
+  front_end.set_sigma(sigma_px);
+  std::fill(roles.begin(), roles.end(), PointRole::unknown);
 }
 
 void Pipeline::State::refine_ego_motion() {

@@ -20,6 +20,7 @@ const FrameResult& Pipeline::step(const StereoFrame& frame) {
   }
   {
     const StageTimer timer(report[Stage::partition].microseconds);
+    s.measure_noise();
     s.partition_coarsely();
   }
   {

@@ -12,6 +12,7 @@ struct Pipeline::State {
 
   void begin(const StereoFrame& frame);
   void match_points(const StereoFrame& frame);  // 5.1: the unified matched set, two clouds
+  void measure_noise();                         // first step only
   void partition_coarsely();                    // 5.1, 6.1 steps 2-3
   void find_world();                            // 5.2, 6.1 step 4
   void split_static_from_moving();              // 5.2.1, step 5
@@ -27,7 +28,7 @@ struct Pipeline::State {
   [[nodiscard]] bool ego_found() const { return ego_outcome == StageOutcome::ok; }
   [[nodiscard]] MotionFit fit_motion(std::span<const PointIndex> members, const Rigid3& H_start);
   void collect_fixed();
-  void learn_sigma();
+  void learn_sigma(double rate);
   void drop_unexplained();
   void publish_object(const MovingBody& body, ObjectState& object) const;
   void outline_of(const MovingBody& body, double grow, std::array<OutlinePoint, 16>& outline, int& size) const;
@@ -66,9 +67,11 @@ struct Pipeline::State {
   Vector6d twist_cam = Vector6d::Zero();  // per second: T_world_cam <- T_world_cam * exp(twist dt)
   bool twist_known = false;
   bool lost = false;
+  bool noise_known = false;
   StaticMotions static_motions;
   double sigma_px = 0.25;
   int reset_counter = 0;
+  std::vector<double> residuals;
   std::vector<WindowObservation> observations;
   std::vector<TrackId> rejected;
   std::vector<PointView> views;
