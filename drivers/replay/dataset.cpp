@@ -58,6 +58,8 @@ class RecordedSource final : public StereoSource {
       text += "\nlost: " + std::to_string(lost) + " pairs (" + std::to_string(pairing_.lost_left) +
               " without left image, " + std::to_string(pairing_.lost_right) + " without right image, " +
               std::to_string(pairing_.lost_both) + " never recorded)";
+    if (pairing_.lost_left + pairing_.lost_right > 0)
+      text += ", the first at " + std::to_string(pairing_.first_lost.ns) + " ns";
     if (pairing_.longest_gap > kBridgedGap)
       text += "\nwarning: " + std::to_string(pairing_.longest_gap) + " pairs in a row are lost after " +
               std::to_string(pairing_.longest_gap_after.ns) + " ns; motion over such a gap is a guess";

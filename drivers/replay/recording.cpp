@@ -71,6 +71,7 @@ class Pairer {
 
   void single(Timestamp time, std::size_t& lost) {
     advance(time);
+    if (out_.lost_left + out_.lost_right == 0) out_.first_lost = time;
     ++lost;
   }
 

@@ -43,6 +43,7 @@ struct Pairing {
   std::size_t lost_left = 0;    // pairs lost because the left image is missing
   std::size_t lost_right = 0;   // ... the right one
   std::size_t lost_both = 0;    // ... or both, seen as a step in time
+  Timestamp first_lost;         // of the image whose partner is missing, when lost_left or lost_right
   std::size_t longest_gap = 0;  // pairs lost in a row
   Timestamp longest_gap_after;  // time stamp of the pair before that gap
 };
