@@ -112,7 +112,7 @@ MotionFit TwoFrameBa::run(const StereoRig& rig, PointPairs pairs, std::span<cons
   // 3 N measurements of the transfer, 6 spent on the motion; the kernel's loss of weight is divided out.
   const double dof = std::max(1.0, 3.0 * weight_sum - 6.0);
   const double variance_scale = weighted_chi2 / dof;
-  fit.cov_H = information.inverse() * std::max(0.25, variance_scale);
+  fit.cov_H = information.inverse() * std::max(0.01, variance_scale);
   const double sigma_px = pairs[static_cast<std::size_t>(used_.front())].sigma_px;
   fit.rms_px = sigma_px * std::sqrt(variance_scale);
   for (const PointIndex m : members) {

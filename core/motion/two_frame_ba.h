@@ -22,7 +22,7 @@ struct TwoFrameBaConfig {
 struct MotionFit {
   StageOutcome outcome = StageOutcome::not_run;
   Rigid3 H_curr_prev = Rigid3::Identity();
-  Matrix6d cov_H = Matrix6d::Zero();  // scaled by the residuals, never below the assumed noise / 2
+  Matrix6d cov_H = Matrix6d::Zero();  // scaled by the residuals
   double rms_px = 0;                  // robust, per coordinate of noise: estimates sigma_px
   int support = 0;                    // members within the 99.9 % gate
 };

@@ -196,7 +196,7 @@ void BodyWindow::measure_covariance() {
   columns.block<6, 6>(6 * last, 0).setIdentity();
   if (before >= 0) columns.block<6, 6>(6 * before, 6).setIdentity();
   const Eigen::MatrixXd cov = solver.solve(columns);
-  const double scale = std::max(0.25, sigma_scale_ * sigma_scale_);
+  const double scale = std::max(0.01, sigma_scale_ * sigma_scale_);
   cov_T_cam_body_ = scale * cov.block<6, 6>(6 * last, 0);
   cov_H_ = cov_T_cam_body_;
   if (before >= 0) {
