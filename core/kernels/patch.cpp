@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
 #include "core/kernels/cubic_spline.h"
 
@@ -83,6 +84,90 @@ void sample_patch(const ImageView& image, float u, float v, PatchTemplate& patch
       }
       s0 = s1, s1 = s2, s2 = s3;
       g0 = g1, g1 = g2, g2 = g3;
+    }
+  }
+}
+
+// Spline taps and their derivatives for a vector of fractions: the operations of cubic_spline.h.
+HWY_INLINE TapVectors spline_taps(Vec t) {
+  const Columns d;
+  const Vec s = hn::Sub(hn::Set(d, 1.0F), t);
+  const Vec sixth = hn::Set(d, 1.0F / 6.0F);
+  const Vec three = hn::Set(d, 3.0F), four = hn::Set(d, 4.0F), one = hn::Set(d, 1.0F);
+  const Vec w1 = hn::Sub(four, hn::Mul(hn::Mul(hn::Mul(three, t), t), hn::Add(one, s)));
+  const Vec w2 = hn::Sub(four, hn::Mul(hn::Mul(hn::Mul(three, s), s), hn::Add(one, t)));
+  return {hn::Mul(hn::Mul(hn::Mul(s, s), s), sixth), hn::Mul(w1, sixth), hn::Mul(w2, sixth),
+          hn::Mul(hn::Mul(hn::Mul(t, t), t), sixth)};
+}
+
+HWY_INLINE TapVectors spline_derivatives(Vec t) {
+  const Columns d;
+  const Vec s = hn::Sub(hn::Set(d, 1.0F), t);
+  const Vec half = hn::Set(d, 0.5F), more = hn::Set(d, 1.5F), two = hn::Set(d, 2.0F);
+  return {hn::Mul(hn::Mul(hn::Neg(half), s), s), hn::Mul(t, hn::Sub(hn::Mul(more, t), two)),
+          hn::Mul(s, hn::Sub(two, hn::Mul(more, s))), hn::Mul(hn::Mul(half, t), t)};
+}
+
+// Four neighbouring pixels per lane, as floats.
+struct PixelQuads {
+  Vec p0, p1, p2, p3;
+};
+
+// `first` + offset[lane] is each lane's first pixel. Plain loads: gather instructions are no faster for bytes.
+HWY_INLINE PixelQuads load_quads(const std::uint8_t* first, const std::int32_t* offset) {
+  const Columns d;
+  const hn::RebindToUnsigned<Columns> du;
+  const hn::RebindToSigned<Columns> di;
+  alignas(64) std::uint32_t packed[kPatchStride];
+  for (std::size_t lane = 0; lane < hn::Lanes(d); ++lane) std::memcpy(packed + lane, first + offset[lane], 4);
+  const auto v = hn::Load(du, packed);
+  const auto byte = hn::Set(du, 0xFF);
+  const auto to_float = [&](auto x) { return hn::ConvertTo(d, hn::BitCast(di, hn::And(x, byte))); };
+  return {to_float(v), to_float(hn::ShiftRight<8>(v)), to_float(hn::ShiftRight<16>(v)),
+          to_float(hn::ShiftRight<24>(v))};
+}
+
+void sample_warped_patch(const ImageView& image, float u, float v, const std::array<float, 4>& A,
+                         PatchTemplate& patch) {
+  const Columns d;
+  const hn::RebindToSigned<Columns> di;
+  const float center = 0.5F * static_cast<float>(patch.size - 1);
+  const Vec zero = hn::Zero(d);
+  const Vec last_u = hn::Set(d, static_cast<float>(image.width - 1));
+  const Vec last_v = hn::Set(d, static_cast<float>(image.height - 1));
+  const Vec a0 = hn::Set(d, A[0]), a1 = hn::Set(d, A[1]), a2 = hn::Set(d, A[2]), a3 = hn::Set(d, A[3]);
+  const auto stride = static_cast<std::int32_t>(image.stride);
+  const std::uint8_t* origin = image.pixels - stride - 1;
+  for (int r = 0; r < patch.size; ++r) {
+    const Vec y = hn::Set(d, static_cast<float>(r) - center);
+    for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
+      const Vec x = hn::Sub(hn::Iota(d, static_cast<float>(c)), hn::Set(d, center));
+      const Vec wanted_u = hn::Add(hn::Set(d, u), hn::Add(hn::Mul(a0, x), hn::Mul(a1, y)));
+      const Vec wanted_v = hn::Add(hn::Set(d, v), hn::Add(hn::Mul(a2, x), hn::Mul(a3, y)));
+      const Vec pu = hn::Min(hn::Max(wanted_u, zero), last_u);
+      const Vec pv = hn::Min(hn::Max(wanted_v, zero), last_v);
+      const auto iu = hn::ConvertTo(di, pu);  // truncation: both are >= 0
+      const auto iv = hn::ConvertTo(di, pv);
+      const Vec fu = hn::Sub(pu, hn::ConvertTo(d, iu));
+      const Vec fv = hn::Sub(pv, hn::ConvertTo(d, iv));
+      alignas(64) std::int32_t offset[kPatchStride];
+      hn::Store(hn::Add(hn::Mul(iv, hn::Set(di, stride)), iu), di, offset);
+      const TapVectors wu = spline_taps(fu), du = spline_derivatives(fu);
+      Vec rows[4], slopes[4];
+      for (int k = 0; k < 4; ++k) {
+        const PixelQuads q = load_quads(origin + k * image.stride, offset);
+        rows[k] = dot(wu, q.p0, q.p1, q.p2, q.p3);
+        slopes[k] = dot(du, q.p0, q.p1, q.p2, q.p3);
+      }
+      const TapVectors wv = spline_taps(fv), dv = spline_derivatives(fv);
+      const Vec gu = dot(wv, slopes[0], slopes[1], slopes[2], slopes[3]);
+      const Vec gv = dot(dv, rows[0], rows[1], rows[2], rows[3]);
+      const std::size_t i = static_cast<std::size_t>(r) * kPatchStride + c;
+      hn::StoreU(dot(wv, rows[0], rows[1], rows[2], rows[3]), d, patch.value.data() + i);
+      hn::StoreU(hn::Add(hn::Mul(gu, a0), hn::Mul(gv, a2)), d, patch.gradient_u.data() + i);
+      hn::StoreU(hn::Add(hn::Mul(gu, a1), hn::Mul(gv, a3)), d, patch.gradient_v.data() + i);
+      const auto shown = hn::And(hn::Eq(pu, wanted_u), hn::Eq(pv, wanted_v));
+      hn::StoreU(hn::IfThenElseZero(shown, hn::LoadU(d, patch.weight.data() + i)), d, patch.weight.data() + i);
     }
   }
 }
@@ -185,6 +270,7 @@ HWY_AFTER_NAMESPACE();
 namespace pelorus {
 
 HWY_EXPORT(sample_patch);
+HWY_EXPORT(sample_warped_patch);
 HWY_EXPORT(normalise);
 HWY_EXPORT(compare_patch);
 
@@ -194,7 +280,7 @@ void sample_patch(const ImageView& image, float u, float v, PatchTemplate& patch
 
 void sample_warped_patch(const ImageView& image, float u, float v, const std::array<float, 4>& A,
                          PatchTemplate& patch) {
-  reference::sample_warped_patch(image, u, v, A, patch);
+  HWY_DYNAMIC_DISPATCH(sample_warped_patch)(image, u, v, A, patch);
 }
 
 void normalise(PatchTemplate& patch) { HWY_DYNAMIC_DISPATCH(normalise)(patch); }
