@@ -76,7 +76,7 @@ TEST(CellGrid, VectorPathsFollowTheReference) {
         reference::cell_means(integral, x, y, s, count, expected);
         for (int j = 0; j < count; ++j) {
           for (int i = 0; i < count; ++i) {
-            ASSERT_NEAR(cell(cells, i, j), cell(expected, i, j), 0.02F) << x << ' ' << y << ' ' << s;
+            ASSERT_NEAR(cell(cells, i, j), cell(expected, i, j), 0.05F) << x << ' ' << y << ' ' << s;
           }
         }
       }
