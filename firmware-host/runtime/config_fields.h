@@ -4,6 +4,7 @@
 // Adding a setting = its default in the stage's Config struct, one line in config_fields.cpp, one in
 // config/pelorus.yaml; a test compares the three. Pure.
 
+#include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
@@ -12,20 +13,18 @@
 
 namespace pelorus {
 
-// A setting in radians whose key is in degrees.
-struct DegreesOf {
-  double* radians = nullptr;
-};
-
 struct ConfigField {
   std::string_view section;
   std::string_view key;
-  std::variant<bool*, int*, float*, double*, DegreesOf> value;  // into the PipelineConfig given to config_fields
-  double low = 0;  // inclusive, in the unit of the key; unused for switches
+  std::variant<bool*, int*, float*, double*> value;  // into the PipelineConfig given to config_fields
+  double low = 0;                                    // inclusive, in the unit of the key; unused for switches
   double high = 0;
 };
 
 // Every setting of `config`, in the order of config/pelorus.yaml. Valid while `config` lives.
 [[nodiscard]] std::vector<ConfigField> config_fields(PipelineConfig& config);
+
+// Rules between settings that `config` breaks, each a sentence; empty when all hold.
+[[nodiscard]] std::vector<std::string> config_conflicts(const PipelineConfig& config);
 
 }  // namespace pelorus

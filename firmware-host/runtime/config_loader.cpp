@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <numbers>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -18,7 +17,7 @@ namespace pelorus {
 namespace {
 
 struct Problem {
-  int line = 0;  // from 1
+  int line = 0;  // from 1; 0 = the file as a whole
   std::string what;
   std::string cure;
 };
@@ -159,9 +158,6 @@ class FileReader {
   static void store(const ConfigField& field, double value) {
     if (double* const* number = std::get_if<double*>(&field.value)) **number = value;
     if (float* const* number = std::get_if<float*>(&field.value)) **number = static_cast<float>(value);
-    if (const DegreesOf* angle = std::get_if<DegreesOf>(&field.value)) {
-      *angle->radians = value * std::numbers::pi / 180;
-    }
   }
 
   template <class Number>
@@ -185,7 +181,9 @@ class FileReader {
 Error to_error(const std::filesystem::path& file, std::vector<Problem> problems) {
   std::stable_sort(problems.begin(), problems.end(),
                    [](const Problem& a, const Problem& b) { return a.line < b.line; });
-  const auto place = [&](const Problem& p) { return file.string() + ":" + std::to_string(p.line); };
+  const auto place = [&](const Problem& p) {
+    return p.line > 0 ? file.string() + ":" + std::to_string(p.line) : file.string();
+  };
   if (problems.size() == 1) {
     return {ErrorCode::bad_configuration, place(problems[0]), problems[0].what, problems[0].cure};
   }
@@ -209,7 +207,11 @@ Result<Ok> apply_config_file(const std::filesystem::path& file, PipelineConfig& 
   } catch (const YAML::Exception& e) {
     return to_error(file, {{e.mark.line + 1, "not valid YAML: " + e.msg, "check indentation, colons and tabs"}});
   }
-  if (!reader.problems().empty()) return to_error(file, reader.problems());
+  std::vector<Problem> problems = reader.problems();
+  if (problems.empty()) {
+    for (const std::string& rule : config_conflicts(changed)) problems.push_back({0, rule, "change one of the two"});
+  }
+  if (!problems.empty()) return to_error(file, problems);
   config = changed;
   return Ok{};
 }
