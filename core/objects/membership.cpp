@@ -36,6 +36,7 @@ void Membership::collect_candidates(const StereoRig& rig, PointPairs pairs, std:
     candidates_.push_back(static_cast<PointIndex>(i));
     hull_points_.push_back(pairs[i].prev.p_cam);
   }
+  former_ = candidates_.size();
   if (!by_hull || hull_points_.size() < 3) return;
   for (const ModelPoint& point : body.model) hull_points_.push_back(body.T_cam_obj * point.p_obj);
   const Eigen::Vector3d center = body.T_cam_obj * body.centroid_obj;
@@ -60,10 +61,14 @@ StageOutcome Membership::run(const StereoRig& rig, PointPairs pairs, std::span<c
   collect_candidates(rig, pairs, roles, by_hull, body, owner);
   if (static_cast<int>(candidates_.size()) < config_.min_points) return StageOutcome::too_few_points;
 
+  // Former members decide the motion while there are enough of them: another body that crosses the hull with more
+  // points would otherwise take this one over.
+  const bool enough = former_ >= static_cast<std::size_t>(config_.min_points);
+  const auto deciding = std::span<const PointIndex>(candidates_).first(enough ? former_ : candidates_.size());
   Rigid3 H_start = body.H_curr_prev;
-  const auto fresh = propose_motion(rig, pairs, candidates_, seed, config_.proposal);
-  if (fresh && explained(rig, pairs, candidates_, *fresh, config_.gate_chi2) >
-                   explained(rig, pairs, candidates_, H_start, config_.gate_chi2)) {
+  const auto fresh = propose_motion(rig, pairs, deciding, seed, config_.proposal);
+  if (fresh && explained(rig, pairs, deciding, *fresh, config_.gate_chi2) >
+                   explained(rig, pairs, deciding, H_start, config_.gate_chi2)) {
     H_start = *fresh;
   }
   const MotionFit fit = two_frame_ba_.run(rig, pairs, candidates_, H_start);

@@ -1,7 +1,7 @@
 #pragma once
 // Members of a known body in this step (paper 5.2.4): points that were its members, and moving points inside the
 // spatial hull of its points at the previous position, gated by the residual to the body's motion. The motion is
-// the prediction or a fresh proposal, whichever explains more, refined by two-frame adjustment.
+// the prediction or a fresh proposal, whichever explains more of the former members, refined by two-frame adjustment.
 // Thread-bound (scratch). O(points * hull points) for the hull, bounded by the caps.
 
 #include "core/motion/motion_proposal.h"
@@ -33,7 +33,8 @@ class Membership {
 
   MembershipConfig config_;
   TwoFrameBa two_frame_ba_;
-  std::vector<PointIndex> candidates_;
+  std::vector<PointIndex> candidates_;  // former members first
+  std::size_t former_ = 0;
   std::vector<Eigen::Vector3d> hull_points_;
 };
 

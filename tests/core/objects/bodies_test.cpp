@@ -1,0 +1,446 @@
+// Moving bodies: membership, identity, merging, recognition (paper 5.2.4) and their table (6.1).
+
+#include <gtest/gtest.h>
+
+#include "core/motion/repartition.h"
+#include "core/objects/registry.h"
+#include "core/objects/spread.h"
+#include "tests/support/point_world.h"
+
+namespace pelorus {
+namespace {
+
+using test::kRig;
+using test::PointWorld;
+using test::twist;
+using test::WorldView;
+
+constexpr double kSigma_px = 0.1;
+
+SurfDescriptor descriptor_of(std::uint64_t place) {
+  std::mt19937_64 random(place);
+  std::normal_distribution<float> gauss(0, 1);
+  SurfDescriptor d{};
+  float sum = 0;
+  for (float& x : d) {
+    x = gauss(random);
+    sum += x * x;
+  }
+  for (float& x : d) x /= std::sqrt(sum);
+  return d;
+}
+
+// A body as known after the previous frame of the view: its frame lies at the previous centroid, unturned.
+MovingBody body_known(const WorldView& view, int number) {
+  MovingBody body{BodyWindowConfig{}};
+  body.id = BodyId{number};
+  body.measured = true;
+  body.phase = ObjectPhase::confirmed;
+  body.members = view.members(number);
+  body.H_curr_prev = view.H_curr_prev(number);
+  body.M_world = view.M_world[static_cast<std::size_t>(number)];
+  body.cov_M_world = 1e-6 * Matrix6d::Identity();
+  Eigen::AlignedBox3d box;
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const PointIndex i : body.members) {
+    const Eigen::Vector3d& p_prev = view.pairs[static_cast<std::size_t>(i)].prev.p_cam;
+    box.extend(p_prev);
+    center += p_prev / static_cast<double>(body.members.size());
+  }
+  body.T_cam_obj = Rigid3(Eigen::Translation3d(center));
+  body.T_world_obj = view.T_world_cam[view.T_world_cam.size() - 2] * body.T_cam_obj;
+  body.extent_m = box.sizes();
+  for (const PointIndex i : body.members) {
+    const PointPair& pair = view.pairs[static_cast<std::size_t>(i)];
+    body.model.push_back({pair.track, pair.prev.p_cam - center, descriptor_of(pair.track.value), 1, true, 0});
+  }
+  return body;
+}
+
+WorldView two_bodies(double gap_m, const Vector6d& twist_a, const Vector6d& twist_b) {
+  PointWorld world(0);
+  world.add_body(40, {-0.25 - gap_m / 2, 0, 2.0}, 0.25, twist_a);
+  world.add_body(40, {0.25 + gap_m / 2, 0, 2.0}, 0.25, twist_b);
+  return world.observe(3, 0, kSigma_px);
+}
+
+struct MembershipRun {
+  WorldView view;
+  std::vector<PointRole> roles;
+  std::vector<BodyId> owner;
+  MovingBody body{BodyWindowConfig{}};
+
+  explicit MembershipRun(WorldView v)
+      : view(std::move(v)), roles(view.pairs.size(), PointRole::moving), owner(view.pairs.size(), kNoBody) {
+    body = body_known(view, 1);
+  }
+  StageOutcome run(bool by_hull) {
+    Membership membership({}, {}, 1000);
+    const std::vector<double> chi2(view.pairs.size(), 100.0);
+    return membership.run(kRig, view.pairs, roles, chi2, by_hull, 1, body, owner);
+  }
+};
+
+TEST(Membership, NewPointsInTheHullThatMoveWithTheBodyJoinIt) {
+  MembershipRun step(two_bodies(0.5, twist(0.03, 0, 0, 0, 0.02, 0), twist(0, 0.03, 0, 0, 0, 0)));
+  const auto former = step.view.members(1);
+  for (std::size_t m = 0; m < former.size(); ++m) {
+    if (m % 2 == 0) step.view.pairs[static_cast<std::size_t>(former[m])].previous_body = BodyId{1};
+  }
+  ASSERT_EQ(step.run(true), StageOutcome::ok);
+  EXPECT_GE(step.body.members.size(), 38U);
+  for (const PointIndex i : step.body.members) {
+    EXPECT_EQ(step.view.body_of[static_cast<std::size_t>(i)], 1);
+    EXPECT_EQ(step.owner[static_cast<std::size_t>(i)], BodyId{1});
+  }
+  EXPECT_LT(se3_log(step.body.H_curr_prev * step.view.H_curr_prev(1).inverse()).norm(), 1e-5);
+}
+
+TEST(Membership, WithoutTheHullOnlyFormerMembersStay) {
+  MembershipRun step(two_bodies(0.5, twist(0.03, 0, 0, 0, 0.02, 0), twist(0, 0.03, 0, 0, 0, 0)));
+  const auto former = step.view.members(1);
+  for (std::size_t m = 0; m < 20; ++m) step.view.pairs[static_cast<std::size_t>(former[m])].previous_body = BodyId{1};
+  ASSERT_EQ(step.run(false), StageOutcome::ok);
+  EXPECT_EQ(step.body.members.size(), 20U);
+}
+
+TEST(Membership, PointsFarFromTheHullDoNotJoinHoweverTheyMove) {
+  MembershipRun step(two_bodies(0.8, twist(0.03, 0, 0, 0, 0, 0), twist(0.03, 0, 0, 0, 0, 0)));
+  for (const PointIndex i : step.view.members(1))
+    step.view.pairs[static_cast<std::size_t>(i)].previous_body = BodyId{1};
+  ASSERT_EQ(step.run(true), StageOutcome::ok);
+  EXPECT_EQ(step.body.members, step.view.members(1));
+}
+
+TEST(Membership, PointsInTheHullThatMoveOtherwiseOrAreTakenStayOut) {
+  // The second body crosses the first one's hull, with more points than it has left: it must not take it over.
+  MembershipRun step(two_bodies(-0.45, twist(0.03, 0, 0, 0, 0, 0), twist(0, 0.03, 0, 0, 0, 0)));
+  for (const PointIndex i : step.view.members(1))
+    step.view.pairs[static_cast<std::size_t>(i)].previous_body = BodyId{1};
+  const auto taken = static_cast<std::size_t>(step.view.members(1)[3]);
+  step.owner[taken] = BodyId{9};
+  ASSERT_EQ(step.run(true), StageOutcome::ok);
+  EXPECT_EQ(step.body.members.size(), 39U);
+  for (const PointIndex i : step.body.members) EXPECT_EQ(step.view.body_of[static_cast<std::size_t>(i)], 1);
+  EXPECT_EQ(step.owner[taken], BodyId{9});
+}
+
+TEST(Membership, ThreePointsAreTooFewAndAreReleased) {
+  MembershipRun step(two_bodies(0.5, twist(0.03, 0, 0, 0, 0, 0), twist(0, 0.03, 0, 0, 0, 0)));
+  for (std::size_t m = 0; m < 3; ++m) step.view.pairs[m].previous_body = BodyId{1};
+  EXPECT_EQ(step.run(false), StageOutcome::too_few_points);
+  EXPECT_TRUE(step.body.members.empty());
+  EXPECT_EQ(std::count(step.owner.begin(), step.owner.end(), kNoBody), std::ssize(step.owner));
+}
+
+TEST(Identity, IsTheBodyWhoseMotionMatches) {
+  const WorldView view = two_bodies(-0.1, twist(0.03, 0, 0, 0, 0, 0), twist(0, 0.03, 0, 0, 0, 0));
+  std::vector<MovingBody> bodies{body_known(view, 1), body_known(view, 2)};
+  for (int number = 1; number <= 2; ++number) {
+    Group group;
+    group.members = view.members(number);
+    const IdentityMatch match = identify(kRig, view.pairs, group, bodies, {});
+    EXPECT_EQ(match.body, number - 1);
+    EXPECT_LT(match.mismatch, 0.1);
+  }
+}
+
+TEST(Identity, ANewMotionAFarPlaceOrABodyOutOfSightIsNoMatch) {
+  const WorldView view = two_bodies(1.2, twist(0.03, 0, 0, 0, 0, 0), twist(0.03, 0, 0, 0, 0, 0));
+  std::vector<MovingBody> bodies{body_known(view, 1)};
+  Group far;
+  far.members = view.members(2);
+  EXPECT_EQ(identify(kRig, view.pairs, far, bodies, {}).body, -1);
+  Group own;
+  own.members = view.members(1);
+  bodies[0].measured = false;
+  EXPECT_EQ(identify(kRig, view.pairs, own, bodies, {}).body, -1);
+  bodies[0].measured = true;
+  bodies[0].H_curr_prev = bodies[0].H_curr_prev * Rigid3(Eigen::Translation3d(0, 0.02, 0));
+  EXPECT_EQ(identify(kRig, view.pairs, own, bodies, {}).body, -1);
+}
+
+TEST(Merge, HalvesThatMoveAlikeAndTouchAreOneAndThoseAbreastAreNot) {
+  const Vector6d step = twist(0.03, 0.01, 0, 0, 0, 0);
+  for (const double gap_m : {0.02, 0.6}) {
+    const WorldView view = two_bodies(gap_m, step, step);
+    const MovingBody a = body_known(view, 1);
+    const MovingBody b = body_known(view, 2);
+    EXPECT_LT(motion_mismatch(a, b), MergeConfig{}.gate_chi2);
+    EXPECT_EQ(touching(view.pairs, a, b, {}), gap_m < 0.1);
+    EXPECT_EQ(touching(view.pairs, b, a, {}), gap_m < 0.1);
+  }
+}
+
+TEST(Merge, MismatchGrowsWithDisplacementAndWithRotationInDeviations) {
+  const WorldView view = two_bodies(0.02, twist(0.03, 0, 0, 0, 0, 0), twist(0.03, 0.012, 0, 0, 0, 0));
+  const MovingBody a = body_known(view, 1);
+  MovingBody b = body_known(view, 2);
+  // 12 mm at 1 mm deviation on either side: 144 / 2 and the floor for systematic errors, less what rotation takes up.
+  EXPECT_GT(motion_mismatch(a, b), 4 * MergeConfig{}.gate_chi2 / 2);
+  b.cov_M_world *= 100;
+  EXPECT_LT(motion_mismatch(a, b), MergeConfig{}.gate_chi2);
+  const Eigen::Translation3d center(b.T_world_obj.translation());
+  b.M_world = center * se3_exp(twist(0, 0, 0, 0, 0.3, 0)) * center.inverse() * a.M_world;
+  EXPECT_GT(motion_mismatch(a, b), MergeConfig{}.gate_chi2);
+}
+
+struct Recognition {
+  WorldView view = two_bodies(0.3, twist(0.03, 0, 0.02, 0.01, 0.02, 0), twist(0, 0.03, 0, 0, 0, 0));
+  std::vector<MovingBody> bodies;
+  std::vector<Rigid3> expected_T_cam_obj;
+  std::vector<Track> tracks;
+  std::vector<const Track*> track_of_pair;
+  Timestamp now{2'000'000'000};
+
+  Recognition() {
+    for (int number = 1; number <= 2; ++number) {
+      bodies.push_back(body_known(view, number));
+      bodies.back().phase = ObjectPhase::coasting;
+      bodies.back().last_seen = Timestamp{1'000'000'000};
+      expected_T_cam_obj.push_back(Rigid3(Eigen::Translation3d(0.1, -0.1, 0)) * bodies.back().T_cam_obj);
+    }
+    tracks.resize(view.pairs.size());
+    for (std::size_t i = 0; i < tracks.size(); ++i) {
+      tracks[i].id = TrackId{1000 + i};
+      tracks[i].descriptor = descriptor_of(view.pairs[i].track.value);
+      tracks[i].laplacian = 1;
+      tracks[i].has_descriptor = true;
+      track_of_pair.push_back(&tracks[i]);
+    }
+  }
+  Reidentified run(int number) {
+    Group group;
+    group.members = view.members(number);
+    return reidentify(kRig, view.pairs, group, track_of_pair, bodies, expected_T_cam_obj, now, 1, {});
+  }
+};
+
+TEST(Reidentification, ReturnsTheIdAndThePoseOfTheBodyThatLooksAlike) {
+  Recognition recognition;
+  for (int number = 1; number <= 2; ++number) {
+    const Reidentified found = recognition.run(number);
+    ASSERT_EQ(found.body, number - 1);
+    EXPECT_EQ(found.matches, 40);
+    const Rigid3 T_true =
+        recognition.view.H_curr_prev(number) * recognition.bodies[static_cast<std::size_t>(number - 1)].T_cam_obj;
+    EXPECT_LT(se3_log(found.T_cam_obj * T_true.inverse()).norm(), 1e-6);
+  }
+}
+
+TEST(Reidentification, StrangersAreRefused) {
+  Recognition recognition;
+  for (std::size_t i = 0; i < recognition.tracks.size(); ++i) {
+    recognition.tracks[i].descriptor = descriptor_of(5000 + i);
+  }
+  EXPECT_EQ(recognition.run(1).body, -1);
+}
+
+TEST(Reidentification, AlikePatchesInAnotherArrangementAreRefused) {
+  Recognition recognition;
+  std::vector<PointIndex> members = recognition.view.members(1);
+  std::vector<SurfDescriptor> descriptors;
+  for (const PointIndex i : members) descriptors.push_back(recognition.tracks[static_cast<std::size_t>(i)].descriptor);
+  std::shuffle(descriptors.begin(), descriptors.end(), std::mt19937_64(8));
+  for (std::size_t m = 0; m < members.size(); ++m) {
+    recognition.tracks[static_cast<std::size_t>(members[m])].descriptor = descriptors[m];
+  }
+  EXPECT_EQ(recognition.run(1).body, -1);
+}
+
+TEST(Reidentification, ABodyInSightOrExpectedElsewhereIsNotACandidate) {
+  Recognition recognition;
+  recognition.bodies[0].phase = ObjectPhase::confirmed;
+  EXPECT_EQ(recognition.run(1).body, -1);
+  recognition.bodies[0].phase = ObjectPhase::coasting;
+  recognition.expected_T_cam_obj[0] = Rigid3(Eigen::Translation3d(3, 0, 0)) * recognition.expected_T_cam_obj[0];
+  EXPECT_EQ(recognition.run(1).body, -1);
+}
+
+TEST(Spread, IsTheDeviationAcrossALineAndStaticPointsInsideAreCounted) {
+  std::vector<PointPair> pairs;
+  const auto add = [&](double u, double v) {
+    PointPair pair;
+    pair.past.fill(Eigen::Vector3d::Zero());
+    pair.curr.z_px = {u, v, u - 30};
+    pairs.push_back(pair);
+  };
+  // A turned rectangle: deviations 50 along, 6 across.
+  for (const double s : {-1.0, 1.0}) {
+    for (const double t : {-1.0, 1.0}) add(500 + 0.8 * 50 * s - 0.6 * 6 * t, 400 + 0.6 * 50 * s + 0.8 * 6 * t);
+  }
+  const std::vector<PointIndex> members{0, 1, 2, 3};
+  EXPECT_NEAR(spread_px(pairs, members), 6.0, 1e-9);
+  add(500, 400);
+  add(510, 407);
+  add(500, 480);
+  std::vector<PointRole> roles(7, PointRole::fixed);
+  for (std::size_t i = 0; i < 4; ++i) roles[i] = PointRole::moving;
+  EXPECT_DOUBLE_EQ(static_inside(pairs, roles, members), 0.5);
+  roles[5] = PointRole::moving;
+  EXPECT_DOUBLE_EQ(static_inside(pairs, roles, members), 0.25);
+}
+
+// The registry's passage through consecutive steps of a world of points, with the true camera poses.
+class Passage {
+ public:
+  explicit Passage(const PointWorld& world) : world_(world) {}
+
+  void step(int frame, bool bodies_seen = true) {
+    WorldView view = world_.observe(frame + 1, kSigma_px, kSigma_px);
+    if (!bodies_seen) keep_floor(view);
+    restore_bodies(view);
+    const std::size_t count = view.pairs.size();
+    std::vector<PointRole> roles(count);
+    std::vector<double> chi2(count);
+    repartition(kRig, view.pairs, static_motions(view), {}, roles, chi2);
+    std::vector<Track> tracks(count);
+    std::vector<const Track*> track_of_pair;
+    for (std::size_t i = 0; i < count; ++i) {
+      tracks[i].descriptor = descriptor_of(view.pairs[i].track.value % 1000);
+      tracks[i].has_descriptor = true;
+      track_of_pair.push_back(&tracks[i]);
+    }
+    WorldStep step;
+    step.time = Timestamp{frame * 100'000'000LL};
+    step.T_world_prev = view.T_world_cam[static_cast<std::size_t>(frame) - 1];
+    step.T_world_curr = view.T_world_cam.back();
+    step.seed = static_cast<std::uint64_t>(frame);
+    std::vector<BodyId> owner(count, kNoBody);
+    registry_.predict(step.T_world_prev, step.T_world_curr, step.dt_s);
+    registry_.claim(kRig, view.pairs, roles, chi2, step, {}, owner);
+    std::vector<PointIndex> open;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (roles[i] == PointRole::moving && owner[i] == kNoBody) open.push_back(static_cast<PointIndex>(i));
+    }
+    Partition groups;
+    if (!open.empty() && view.body_of[static_cast<std::size_t>(open.back())] > 0) {
+      for (int body = 1; body < static_cast<int>(view.M_world.size()); ++body) add_group(view, open, body, groups);
+    }
+    registry_.adopt(kRig, view.pairs, roles, groups, track_of_pair, step, {}, owner);
+    registry_.settle(kRig, view.pairs, roles, chi2, track_of_pair, step, {}, owner);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (owner[i] == kNoBody && roles[i] == PointRole::fixed) owner[i] = kWorldBody;
+      body_of_track_.resize(std::max(body_of_track_.size(), std::size_t{view.pairs[i].track.value} + 1), kNoBody);
+      body_of_track_[view.pairs[i].track.value] = owner[i];
+    }
+    view_ = std::move(view);
+  }
+  void forget_tracks() { body_of_track_.clear(); }
+  [[nodiscard]] std::span<const MovingBody> bodies() const { return registry_.bodies(); }
+  [[nodiscard]] const WorldView& view() const { return view_; }
+
+ private:
+  static void keep_floor(WorldView& view) {
+    std::erase_if(view.pairs, [&](const PointPair& p) {
+      return view.body_of[static_cast<std::size_t>(&p - view.pairs.data())] != 0;
+    });
+    std::erase_if(view.body_of, [](int body) { return body != 0; });
+  }
+  void restore_bodies(WorldView& view) const {
+    for (PointPair& pair : view.pairs) {
+      pair.previous_body = pair.track.value < body_of_track_.size() ? body_of_track_[pair.track.value] : kNoBody;
+    }
+  }
+  static StaticMotions static_motions(const WorldView& view) {
+    StaticMotions motions;
+    const std::size_t last = view.T_world_cam.size() - 1;
+    for (std::size_t j = 0; j <= kPastFrames && j < last; ++j) {
+      motions.T_curr_past[j] = view.T_world_cam[last].inverse() * view.T_world_cam[last - 1 - j];
+      ++motions.size;
+    }
+    return motions;
+  }
+  static void add_group(const WorldView& view, const std::vector<PointIndex>& open, int body, Partition& groups) {
+    Group group;
+    group.H_curr_prev = view.H_curr_prev(body);
+    for (const PointIndex i : open) {
+      if (view.body_of[static_cast<std::size_t>(i)] == body) group.members.push_back(i);
+    }
+    if (!group.members.empty()) groups.groups.push_back(group);
+  }
+
+  PointWorld world_;
+  Registry registry_{{}, {}, {}, {}, {}, {.recent_frames = 6, .key_frames = 4, .acceleration_prior = true}, {}, 1000};
+  std::vector<BodyId> body_of_track_;
+  WorldView view_;
+};
+
+PointWorld slow_camera(int floor_points) {
+  PointWorld world(floor_points);
+  world.twist_cam = twist(0.004, 0.002, 0.003, 0.0005, -0.001, 0.0005);
+  return world;
+}
+
+TEST(Registry, AMovingBodyIsBornConfirmedAndItsMotionIsTrue) {
+  PointWorld world = slow_camera(100);
+  world.add_body(40, {0, 0, 2.0}, 0.25, twist(0.02, 0.005, 0.01, 0, 0.02, 0));
+  Passage passage(world);
+  for (int frame = 1; frame <= 10; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  const MovingBody& body = passage.bodies()[0];
+  EXPECT_EQ(body.phase, ObjectPhase::confirmed);
+  EXPECT_EQ(body.id, BodyId{1});
+  EXPECT_GE(body.members.size(), 38U);
+  const Eigen::Vector3d center = body.T_world_obj * body.centroid_obj;
+  const Rigid3& M_true = passage.view().M_world[1];
+  // Depth of the centroid in one step: z^2 sqrt(2) sigma sqrt(2) / (f b sqrt(40)) = 1.3 mm.
+  EXPECT_LT((body.M_world * center - M_true * center).norm(), 4 * 0.0013);
+  EXPECT_LT(rotation_angle_rad(body.M_world.linear() * M_true.linear().transpose()), 0.01);
+}
+
+TEST(Registry, NothingIsAnObjectOverASceneAtRest) {
+  Passage passage(slow_camera(150));
+  for (int frame = 1; frame <= 6; ++frame) passage.step(frame);
+  EXPECT_TRUE(passage.bodies().empty());
+}
+
+TEST(Registry, ABodyThatComesBackKeepsItsIdAndItsFrame) {
+  PointWorld world = slow_camera(100);
+  world.add_body(40, {-0.1, 0, 2.0}, 0.25, twist(0.015, 0, 0.005, 0, 0.01, 0));
+  Passage passage(world);
+  for (int frame = 1; frame <= 8; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  const Rigid3 T_before = passage.bodies()[0].T_world_obj;
+  const double cov_before = passage.bodies()[0].cov_T_world_obj.trace();
+  for (int frame = 9; frame <= 13; ++frame) passage.step(frame, false);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  EXPECT_EQ(passage.bodies()[0].phase, ObjectPhase::coasting);
+  EXPECT_FALSE(passage.bodies()[0].measured);
+  EXPECT_GT(passage.bodies()[0].cov_T_world_obj.trace(), cov_before);
+  passage.forget_tracks();
+  for (int frame = 14; frame <= 16; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  const MovingBody& body = passage.bodies()[0];
+  EXPECT_EQ(body.id, BodyId{1});
+  EXPECT_EQ(body.phase, ObjectPhase::confirmed);
+  Rigid3 T_true = T_before;
+  for (int frame = 9; frame <= 16; ++frame) T_true = passage.view().M_world[1] * T_true;
+  EXPECT_LT((body.T_world_obj.translation() - T_true.translation()).norm(), 0.01);
+  EXPECT_LT(rotation_angle_rad(body.T_world_obj.linear() * T_true.linear().transpose()), 0.03);
+}
+
+TEST(Registry, ABodyOutOfSightForLongEnds) {
+  PointWorld world = slow_camera(60);
+  world.add_body(40, {0, 0, 2.0}, 0.25, twist(0.02, 0, 0, 0, 0, 0));
+  Passage passage(world);
+  for (int frame = 1; frame <= 6; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  for (int frame = 7; frame <= 50; ++frame) passage.step(frame, false);
+  EXPECT_TRUE(passage.bodies().empty());
+}
+
+TEST(Registry, TwoHalvesOfOneBodyBecomeOneAndTwoAbreastStayTwo) {
+  for (const double gap_m : {0.02, 0.7}) {
+    PointWorld world = slow_camera(60);
+    const Vector6d step = twist(0.0, 0.02, 0.005, 0, 0, 0);
+    world.add_body(40, {-0.25 - gap_m / 2, 0, 2.0}, 0.25, step);
+    world.add_body(40, {0.25 + gap_m / 2, 0, 2.0}, 0.25, step);
+    Passage passage(world);
+    for (int frame = 1; frame <= 8; ++frame) passage.step(frame);
+    EXPECT_EQ(passage.bodies().size(), gap_m < 0.1 ? 1U : 2U) << "gap " << gap_m;
+  }
+}
+
+}  // namespace
+}  // namespace pelorus
