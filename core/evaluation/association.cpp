@@ -15,18 +15,18 @@ struct Candidate {
 };
 
 // Distance over gate; above 1 they have nothing to do with each other.
-double gated_distance(const Eigen::Vector3d& centroid_cam, const EstimatedObject& object, const TrueBodyView& view,
+// Points on a body's surface have their centroid within its box: the gate only has to allow for the measurement.
+// Inside, the centre is the tie-break between boxes that overlap.
+double gated_distance(const Eigen::Vector3d& centroid_cam, const TrueBodyView& view, bool exact,
                       const AssociationConfig& config) {
+  constexpr double kTieBreak_per_m = 1e-6;
   const Eigen::Vector3d p_body = view.T_cam_body.inverse() * centroid_cam;
-  if (!view.half_size_m) {
-    const double gate_m = std::max(config.centre_gate_m, config.centre_gate_extents * object.extent_m.norm());
-    return p_body.norm() / gate_m;
-  }
+  if (!view.half_size_m) return p_body.norm() / config.centre_gate_m;
   const Eigen::Vector3d outside = (p_body.cwiseAbs() - *view.half_size_m).cwiseMax(0.0);
-  return outside.norm() / config.box_gate_m;
+  return outside.norm() / (exact ? config.box_gate_m : config.rough_box_gate_m) + kTieBreak_per_m * p_body.norm();
 }
 
-std::vector<Candidate> near_pairs(const EstimatedFrame& frame, const TrueFrame& truth,
+std::vector<Candidate> near_pairs(const EstimatedFrame& frame, const TrueFrame& truth, bool exact,
                                   const AssociationConfig& config) {
   std::vector<Candidate> candidates;
   if (!frame.T_world_cam) return candidates;
@@ -36,7 +36,7 @@ std::vector<Candidate> near_pairs(const EstimatedFrame& frame, const TrueFrame& 
     if (!confirmed && object.phase != ObjectPhase::coasting) continue;
     const Eigen::Vector3d centroid_cam = T_cam_world * object.centroid_world;
     for (const TrueBodyView& view : truth.bodies) {
-      const double distance = gated_distance(centroid_cam, object, view, config);
+      const double distance = gated_distance(centroid_cam, view, exact, config);
       if (distance <= 1.0) candidates.push_back({object.id, view.body, distance, confirmed});
     }
   }
@@ -83,7 +83,7 @@ std::vector<FrameMatches> associate(const EstimatedRun& run, const Truth& truth,
   std::vector<FrameMatches> all(run.size());
   FrameMatches previous;
   for (std::size_t i = 0; i < run.size() && i < truth.frames.size(); ++i) {
-    const std::vector<Candidate> candidates = near_pairs(run[i], truth.frames[i], config);
+    const std::vector<Candidate> candidates = near_pairs(run[i], truth.frames[i], truth.exact, config);
     pair_up(candidates, previous, all[i]);
     note_duplicates(candidates, truth.frames[i], all[i]);
     previous = all[i];

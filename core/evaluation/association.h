@@ -12,9 +12,9 @@
 namespace pelorus {
 
 struct AssociationConfig {
-  double centre_gate_m = 0.6;        // box unknown: distance of the centroid from the body's centre ...
-  double centre_gate_extents = 0.6;  // ... or this share of the diagonal of the object's own seen extent, if larger
-  double box_gate_m = 0.5;           // box known: distance of the centroid from the box
+  double centre_gate_m = 0.6;     // box unknown: distance of the centroid from the body's centre
+  double box_gate_m = 0.15;       // box exactly known: distance of the centroid from the box
+  double rough_box_gate_m = 0.5;  // box known as well as people and laser scanners draw it
 };
 
 struct ObjectMatch {

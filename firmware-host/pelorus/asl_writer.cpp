@@ -83,6 +83,11 @@ Result<> AslWriter::write_headers(const synthetic::SyntheticSource& source) {
     if (!open_csv("mav0/object" + std::to_string(k + 1), "#timestamp_ns, p_x, p_y, p_z, q_w, q_x, q_y, q_z, visible_px",
                   object_truth_[k]))
       return io_error(partial_, "the truth cannot be written");
+    const synthetic::Body& body = source.object_body(static_cast<int>(k));
+    std::ofstream box(partial_ / ("mav0/object" + std::to_string(k + 1)) / "body.csv");
+    box << "#name, size_x [m], size_y [m], size_z [m]\n"
+        << body.name << ',' << body.size_m.x() << ',' << body.size_m.y() << ',' << body.size_m.z() << '\n';
+    if (!box.flush()) return io_error(partial_, "the size of a body cannot be written");
   }
   return Ok{};
 }

@@ -109,42 +109,37 @@ std::string body_ids(const BodyScore& score) {
   return ids.empty() ? "-" : ids;
 }
 
+// A length in cm and an angle in degrees, "-" where there are none.
+std::string pair_cells(const ErrorStatistics& metres, const ErrorStatistics& radians, double ErrorStatistics::*which) {
+  if (metres.count == 0) return format("%8s%7s", "-", "-");
+  return format("%8.3f%7.3f", metres.*which * kCmPerM, radians.*which * kDegPerRad);
+}
+
 std::string body_line(const BodyEvaluation& body) {
   const MotionError& motion = body.motion;
-  const auto number = [](const ErrorStatistics& statistics, double value, const char* pattern) {
-    if (statistics.count == 0) return std::string("-");
-    std::array<char, 32> digits{};
-    std::snprintf(digits.data(), digits.size(), pattern, value);
-    return std::string(digits.data());
-  };
-  const std::string detected =
-      body.score.time_to_detection_s ? format("%.2f s", *body.score.time_to_detection_s) : "never";
-  const std::string coverage = body.score.frames_on_show == 0 ? "-" : format("%.1f %%", 100 * body.score.coverage());
-  const auto cm = [&](const ErrorStatistics& s, double v) { return number(s, v * kCmPerM, "%.3f"); };
-  const auto deg = [&](const ErrorStatistics& s, double v) { return number(s, v * kDegPerRad, "%.3f"); };
-  std::string text =
-      format("  %-13s %7s %7s   %7s %7s   %7s %7s   %8s %9d %9s  %-8s", body.name.c_str(),
-             cm(motion.step_m, motion.step_m.median).c_str(), deg(motion.step_rad, motion.step_rad.median).c_str(),
-             cm(motion.since_birth_m, motion.since_birth_m.mean).c_str(),
-             deg(motion.since_birth_rad, motion.since_birth_rad.mean).c_str(),
-             cm(motion.since_birth_m, motion.since_birth_m.max).c_str(),
-             deg(motion.since_birth_rad, motion.since_birth_rad.max).c_str(), coverage.c_str(),
-             body.score.identity_switches, detected.c_str(), body_ids(body.score).c_str());
-  if (body.consistency.count > 0) text += format(" %6.2f", body.consistency.mean_nees);
-  return text + "\n";
+  const BodyScore& score = body.score;
+  const std::string detected = score.time_to_detection_s ? format("%.2f s", *score.time_to_detection_s) : "never";
+  const std::string coverage = score.frames_on_show == 0 ? "-" : format("%.1f %%", 100 * score.coverage());
+  const std::string nees = body.consistency.count == 0 ? "-" : format("%.2f", body.consistency.mean_nees);
+  return format("  %-12s", body.name.c_str()) + pair_cells(motion.step_m, motion.step_rad, &ErrorStatistics::median) +
+         pair_cells(motion.step_m, motion.step_rad, &ErrorStatistics::mean) +
+         pair_cells(motion.since_birth_m, motion.since_birth_rad, &ErrorStatistics::mean) +
+         pair_cells(motion.since_birth_m, motion.since_birth_rad, &ErrorStatistics::max) +
+         format(" %9s %8d %9s %7s  %s\n", coverage.c_str(), score.identity_switches, detected.c_str(), nees.c_str(),
+                body_ids(score).c_str());
 }
 
 std::string bodies_text(const RunEvaluation& run) {
   if (run.evaluation.bodies.empty()) return "";
-  std::string text = "\nMoving bodies     step motion      since birth, mean  since birth, max\n";
-  text += "                  median (ME)                                           id\n";
-  text +=
-      "                    cm     deg        cm     deg        cm     deg   coverage  switches  detected  ids        "
-      "NEES\n";
+  std::string text =
+      "\nMoving bodies   step, median    step, mean     since birth    since birth             id\n"
+      "                      (ME)                         mean            max\n"
+      "                   cm    deg      cm    deg      cm    deg      cm    deg  coverage switches  detected    NEES"
+      "  ids\n";
   if (run.exact_truth) {
     text +=
-        "  goal            < 0.05  < 0.05     < 0.5   < 0.3                     > 95 %         0               one"
-        "        6\n";
+        "  goal         < 0.05 < 0.05                 < 0.5  < 0.3                   > 95 %        0                 6"
+        "  one\n";
   }
   for (const BodyEvaluation& body : run.evaluation.bodies) text += body_line(body);
   return text;

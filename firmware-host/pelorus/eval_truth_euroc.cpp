@@ -70,11 +70,36 @@ bool is_synthetic(const fs::path& mav0) {
   return false;
 }
 
+struct BodyBox {
+  std::string name;
+  std::optional<Eigen::Vector3d> half_size_m;
+};
+
+// body.csv beside the poses: optional, ours.
+Result<BodyBox> read_body_box(const fs::path& folder) {
+  BodyBox box{folder.filename().string(), std::nullopt};
+  const fs::path file = folder / "body.csv";
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) return box;
+  Result<TextTable> read = TextTable::read(file, TableHeader::none);
+  if (!read) return read.error();
+  TextTable& table = read.value();
+  if (table.size() != 1 || table.columns() != 4) {
+    return Error{ErrorCode::bad_input, file.string(), "a body is one line: name and three sizes", "check the file"};
+  }
+  box.name = table.text(0, 0);
+  box.half_size_m = 0.5 * Eigen::Vector3d(table.number(0, 1), table.number(0, 2), table.number(0, 3));
+  if (table.problem()) return *table.problem();
+  return box;
+}
+
 Result<Ok> add_body(const fs::path& file, const EstimatedRun& run, Truth& truth) {
   Result<std::vector<TimedRow>> rows = read_timed_rows(file);
   if (!rows) return rows.error();
   const int body = static_cast<int>(truth.bodies.size());
-  truth.bodies.push_back(file.parent_path().filename().string());
+  const Result<BodyBox> box = read_body_box(file.parent_path());
+  if (!box) return box.error();
+  truth.bodies.push_back(box.value().name);
   for (std::size_t i = 0; i < run.size(); ++i) {
     TrueFrame& frame = truth.frames[i];
     const std::optional<TimedRow> row = at_time(rows.value(), run[i].capture_time);
@@ -82,6 +107,7 @@ Result<Ok> add_body(const fs::path& file, const EstimatedRun& run, Truth& truth)
     TrueBodyView view;
     view.body = body;
     view.T_cam_body = frame.T_truth_cam->inverse() * row->T;
+    view.half_size_m = box.value().half_size_m;
     if (row->visible_px >= 0) view.visible_px = row->visible_px;
     frame.bodies.push_back(view);
   }

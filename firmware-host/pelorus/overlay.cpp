@@ -18,7 +18,7 @@ constexpr int kShift = 4;                 // sub-pixel bits of OpenCV's drawing 
 const std::array<cv::Scalar, 8> kObjectColors = {
     cv::Scalar(30, 140, 255), cv::Scalar(255, 90, 200), cv::Scalar(255, 200, 40), cv::Scalar(60, 60, 255),
     cv::Scalar(40, 230, 255), cv::Scalar(255, 110, 90), cv::Scalar(170, 60, 255), cv::Scalar(90, 255, 90)};
-const cv::Scalar kStaticColor(120, 150, 112);
+const cv::Scalar kStaticColor(128, 172, 122);
 const cv::Scalar kUnexplainedColor(255, 255, 255);
 const cv::Scalar kBannerColor(34, 30, 26);
 const cv::Scalar kTextColor(235, 235, 235);
@@ -124,7 +124,8 @@ void Overlay::observe(const FrameResult& result) {
       continue;
     }
     Follow& follow = followed_[object.id];
-    follow.trail_world.push_back(object.centroid_world);
+    // The object's own origin: the centroid of the seen points jumps as points come and go.
+    follow.trail_world.push_back(object.T_world_obj.translation());
     if (follow.trail_world.size() > kTrailLength) follow.trail_world.pop_front();
     const Eigen::Vector3d step_world = object.centroid_world - object.M_world.inverse() * object.centroid_world;
     // A step's speed jumps with its noise; the label wants to be read.
@@ -136,19 +137,26 @@ void Overlay::observe(const FrameResult& result) {
   has_previous_ = true;
 }
 
-void Overlay::draw_points(cv::Mat& picture, std::span<const PointView> points) const {
+void Overlay::draw_points(cv::Mat& picture, const FrameResult& result, std::span<const PointView> points) const {
+  const auto is_published = [&](BodyId body) {
+    const auto objects = result.objects_view();
+    return std::any_of(objects.begin(), objects.end(),
+                       [&](const ObjectState& object) { return object.id == body && is_labelled(object); });
+  };
   const double unit = std::max(1.0, picture.rows / 480.0);
   for (const PointView& point : points) {
     const double u_px = point.curr.z_px.x();
     const double v_px = point.curr.z_px.y();
     if (point.body == kWorldBody) {
-      dot(picture, u_px, v_px, 1.3 * unit, kStaticColor);
+      dot(picture, u_px, v_px, 1.5 * unit, kStaticColor);
     } else if (point.body == kNoBody) {
       dot(picture, u_px, v_px, 1.6 * unit, cv::Scalar(0, 0, 0));
       dot(picture, u_px, v_px, 1.1 * unit, kUnexplainedColor);
-    } else {
+    } else if (is_published(point.body)) {
       dot(picture, u_px, v_px, 2.5 * unit, cv::Scalar(0, 0, 0));
       dot(picture, u_px, v_px, 2.0 * unit, object_color(point.body));
+    } else {
+      dot(picture, u_px, v_px, 1.5 * unit, object_color(point.body) * 0.7);
     }
   }
 }
@@ -242,7 +250,7 @@ cv::Mat Overlay::draw(const ImageView& left, const FrameResult& result, std::spa
   cv::Mat dimmed;
   grey.convertTo(dimmed, CV_8U, 0.85);  // a little darker: colours stand out
   cv::cvtColor(dimmed, picture, cv::COLOR_GRAY2BGR);
-  draw_points(picture, points);
+  draw_points(picture, result, points);
   for (const ObjectState& object : result.objects_view()) {
     if (object.phase != ObjectPhase::ended) draw_object(picture, result, object);
   }

@@ -29,7 +29,7 @@ class Overlay {
     std::deque<Eigen::Vector3d> trail_world;  // newest last
     double speed_m_s = 0;
   };
-  void draw_points(cv::Mat& picture, std::span<const PointView> points) const;
+  void draw_points(cv::Mat& picture, const FrameResult& result, std::span<const PointView> points) const;
   void draw_object(cv::Mat& picture, const FrameResult& result, const ObjectState& object) const;
   void draw_trail(cv::Mat& picture, const FrameResult& result, const ObjectState& object) const;
   void draw_banner(cv::Mat& banner, const FrameResult& result, std::span<const PointView> points) const;
