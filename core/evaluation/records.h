@@ -65,6 +65,7 @@ struct TrueFrame {
 struct Truth {
   std::string origin;               // where it comes from and how far it can be trusted
   bool exact = false;               // synthetic; otherwise a measurement with errors of its own
+  bool scale_known = true;          // false: its lengths are too rough to judge drift by
   bool knows_bodies = false;        // false: nothing is known about moving bodies, so nothing can be called false
   std::vector<std::string> bodies;  // names
   std::vector<TrueFrame> frames;    // one per frame of the run, same order

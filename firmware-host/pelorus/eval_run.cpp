@@ -23,6 +23,7 @@ Result<RunEvaluation> evaluate_run(const std::string& dataset, const std::string
   }
   result.has_truth = true;
   result.exact_truth = truth.value()->exact;
+  result.scale_known = truth.value()->scale_known;
   result.truth_origin = truth.value()->origin;
   result.evaluation = evaluate(run.value(), *truth.value(), config);
   return result;

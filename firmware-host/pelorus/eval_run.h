@@ -19,6 +19,7 @@ struct RunEvaluation {
   std::optional<StepTimes> step_times;
   bool has_truth = false;
   bool exact_truth = false;
+  bool scale_known = true;
   std::string truth_origin;
 };
 

@@ -137,6 +137,7 @@ Result<std::optional<Truth>> read_kitti_raw_truth(const fs::path& folder, const 
   if (!truth || !truth.value()) return truth;
   Truth& known = *truth.value();
   known.origin = "KITTI GPS/INS and hand-made boxes: scale to 5 %, objects for their identity rather than their motion";
+  known.scale_known = false;
   const fs::path labels = folder / "tracking_label_02.txt";
   std::error_code ignored;
   if (!fs::is_regular_file(labels, ignored)) return truth;
