@@ -59,8 +59,9 @@ struct Descent {
   // A coarse answer may belong to another surface in its wide window: then the earlier ones get their chance.
   void descend(int level, KltTask& task) {
     const std::array<Place, 3> starts{hint, place, predicted};
+    const float near = std::ldexp(1.0F, level);  // a pixel of the level: the same basin
     for (auto start = starts.begin(); start != starts.end(); ++start) {
-      const bool tried = std::find(starts.begin(), start, *start) != start;
+      const bool tried = std::any_of(starts.begin(), start, [&](Place p) { return distance(p, *start) <= near; });
       if (!tried && track(level, *start, task)) return;
     }
   }

@@ -12,7 +12,10 @@ constexpr float kMaxStepPx = 2.0F;  // per iteration, level pixels: the linearis
 constexpr float kSettledPx = 0.1F;  // last step accepted when the iterations run out
 constexpr float kMaxDriftPerHalfWindow = 1.5F;
 constexpr float kConfirmedReachPx =
-    3.0F;                             // a coarser level is right to about half a pixel of its own and its scale error
+    3.0F;  // a coarser level is right to about half a pixel of its own and its scale error
+// Most iterations of lost points are spent after this; few that are so far off by then still arrive.
+constexpr int kPatience = 4;
+constexpr float kHopelessNcc = 0.3F;
 constexpr float kMinCoverage = 0.5F;  // share of the window that both images must show
 
 float least_eigenvalue(float uu, float uv, float vv) {
@@ -39,8 +42,6 @@ bool has_texture(const PatchTemplate& patch, KltSearch search, float min_eigenva
   return eigenvalue >= min_eigenvalue * patch.count && patch.energy > kMinPatchContrast * patch.count;
 }
 
-float distance(Place a, Place b) { return std::hypot(a.u_px - b.u_px, a.v_px - b.v_px); }
-
 KltOutcome iterate(const KltConfig& config, const PatchTemplate& patch, KltSearch direction, float epsilon_px,
                    LevelSearch& search) {
   const auto half = static_cast<float>(config.half_window_px);
@@ -53,9 +54,10 @@ KltOutcome iterate(const KltConfig& config, const PatchTemplate& patch, KltSearc
     fit = fit_of(patch, sums);
     if (fit.spread <= 0) return KltOutcome::low_correlation;
     if (i == 0) search.start_ncc = fit.ncc;
+    if (i >= kPatience && fit.ncc < kHopelessNcc) return KltOutcome::low_correlation;
     // Gain as ratio of contrasts: equals the fitted gain at the solution and stays tame far from it.
     Place step = newton_step(patch, sums, std::sqrt(fit.spread / patch.energy), direction);
-    last_step = std::hypot(step.u_px, step.v_px);
+    last_step = distance(step, {});
     const float scale = last_step > kMaxStepPx ? kMaxStepPx / last_step : 1.0F;
     search.place.u_px -= scale * step.u_px;
     search.place.v_px -= scale * step.v_px;

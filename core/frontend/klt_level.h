@@ -2,6 +2,7 @@
 // One pyramid level of Klt for one point; Klt's own parts, not for callers. Pure; rectified pixels of that level.
 
 #include <array>
+#include <cmath>
 
 #include "core/frontend/klt.h"
 #include "core/kernels/patch.h"
@@ -16,6 +17,12 @@ struct Place {
   float v_px = 0;
   bool operator==(const Place&) const = default;
 };
+
+inline float distance(Place a, Place b) {
+  const float du = a.u_px - b.u_px;
+  const float dv = a.v_px - b.v_px;
+  return std::sqrt(du * du + dv * dv);
+}
 
 // Question and answer of a level.
 struct LevelSearch {
