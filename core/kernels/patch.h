@@ -78,7 +78,7 @@ struct SlantSums {
   float slope_x = 0;
   float slope_y = 0;
 };
-// compare_patch() with the two sums of the slant added. The plain sums may differ from compare_patch's in rounding.
+// compare_patch() with the two sums of the slant added.
 [[nodiscard]] SlantSums compare_slanted_patch(const ImageView& image, float u, float v, const PatchTemplate& patch,
                                               const PatchSlant& slant);
 
@@ -95,6 +95,9 @@ void sample_patch(const ImageView& image, float u, float v, PatchTemplate& patch
 void sample_warped_patch(const ImageView& image, float u, float v, const std::array<float, 4>& A, PatchTemplate& patch);
 void normalise(PatchTemplate& patch);
 [[nodiscard]] PatchSums compare_patch(const ImageView& image, float u, float v, const PatchTemplate& patch);
+void prepare_slant(const PatchTemplate& patch, PatchSlant& slant);
+[[nodiscard]] SlantSums compare_slanted_patch(const ImageView& image, float u, float v, const PatchTemplate& patch,
+                                              const PatchSlant& slant);
 }  // namespace reference
 
 }  // namespace pelorus

@@ -40,6 +40,33 @@ float sum_of(int size, F&& term) {
   return columns[0];
 }
 
+// The patch at (u, v) relative to the template's mean; 0 where the weight is.
+PatchRows relative_patch(const ImageView& image, float u, float v, const PatchTemplate& patch) {
+  const float floor_u = std::floor(u);
+  const float floor_v = std::floor(v);
+  const Taps wu = cubic_spline(u - floor_u);
+  const Taps wv = cubic_spline(v - floor_v);
+  PatchRows relative{};
+  for (int r = 0; r < patch.size; ++r) {
+    for (int c = 0; c < kPatchStride; ++c) {
+      const std::uint8_t* first = image.row(static_cast<int>(floor_v) + r - 1) + static_cast<int>(floor_u) + c - 1;
+      const std::size_t i = index_of(r, c);
+      relative[i] = patch.weight[i] * (value_at(first, image.stride, wu, wv) - patch.mean);
+    }
+  }
+  return relative;
+}
+
+PatchSums compare(const PatchRows& relative, const PatchTemplate& patch) {
+  PatchSums sums;
+  sums.gradient_u = sum_of(patch.size, [&](std::size_t i) { return patch.gradient_u[i] * relative[i]; });
+  sums.gradient_v = sum_of(patch.size, [&](std::size_t i) { return patch.gradient_v[i] * relative[i]; });
+  sums.value = sum_of(patch.size, [&](std::size_t i) { return patch.value[i] * relative[i]; });
+  sums.sum = sum_of(patch.size, [&](std::size_t i) { return relative[i]; });
+  sums.square = sum_of(patch.size, [&](std::size_t i) { return relative[i] * relative[i]; });
+  return sums;
+}
+
 }  // namespace
 
 void sample_patch(const ImageView& image, float u, float v, PatchTemplate& patch) {
@@ -119,26 +146,46 @@ void normalise(PatchTemplate& patch) {
   patch.structure_vv = sum_of(patch.size, [&](std::size_t i) { return gv[i] * gv[i]; });
 }
 
-PatchSums compare_patch(const ImageView& image, float u, float v, const PatchTemplate& patch) {
-  const float floor_u = std::floor(u);
-  const float floor_v = std::floor(v);
-  const Taps wu = cubic_spline(u - floor_u);
-  const Taps wv = cubic_spline(v - floor_v);
-  PatchRows relative{};
+void prepare_slant(const PatchTemplate& patch, PatchSlant& slant) {
+  const float center = 0.5F * static_cast<float>(patch.size - 1);
+  auto& sx = slant.slope_x;
+  auto& sy = slant.slope_y;
+  const auto& f = patch.value;
+  const auto& g = patch.gradient_u;
+  const auto& w = patch.weight;
   for (int r = 0; r < patch.size; ++r) {
     for (int c = 0; c < kPatchStride; ++c) {
-      const std::uint8_t* first = image.row(static_cast<int>(floor_v) + r - 1) + static_cast<int>(floor_u) + c - 1;
-      const std::size_t i = index_of(r, c);
-      relative[i] = patch.weight[i] * (value_at(first, image.stride, wu, wv) - patch.mean);
+      sx[index_of(r, c)] = g[index_of(r, c)] * (static_cast<float>(c) - center);
+      sy[index_of(r, c)] = g[index_of(r, c)] * (static_cast<float>(r) - center);
     }
   }
-  PatchSums sums;
-  sums.gradient_u = sum_of(patch.size, [&](std::size_t i) { return patch.gradient_u[i] * relative[i]; });
-  sums.gradient_v = sum_of(patch.size, [&](std::size_t i) { return patch.gradient_v[i] * relative[i]; });
-  sums.value = sum_of(patch.size, [&](std::size_t i) { return patch.value[i] * relative[i]; });
-  sums.sum = sum_of(patch.size, [&](std::size_t i) { return relative[i]; });
-  sums.square = sum_of(patch.size, [&](std::size_t i) { return relative[i] * relative[i]; });
-  return sums;
+  const float per_pixel = 1.0F / std::max(patch.count, 1.0F);
+  const float scale = 1.0F / std::max(patch.energy, 1e-6F);
+  const float mean_x = sum_of(patch.size, [&](std::size_t i) { return w[i] * sx[i]; }) * per_pixel;
+  const float mean_y = sum_of(patch.size, [&](std::size_t i) { return w[i] * sy[i]; }) * per_pixel;
+  const float along_x = sum_of(patch.size, [&](std::size_t i) { return f[i] * sx[i]; }) * scale;
+  const float along_y = sum_of(patch.size, [&](std::size_t i) { return f[i] * sy[i]; }) * scale;
+  for (std::size_t i = 0; i < index_of(patch.size, 0); ++i) {
+    sx[i] = w[i] * (sx[i] - mean_x) - along_x * f[i];
+    sy[i] = w[i] * (sy[i] - mean_y) - along_y * f[i];
+  }
+  slant.structure = {patch.structure_uu,
+                     sum_of(patch.size, [&](std::size_t i) { return g[i] * sx[i]; }),
+                     sum_of(patch.size, [&](std::size_t i) { return g[i] * sy[i]; }),
+                     sum_of(patch.size, [&](std::size_t i) { return sx[i] * sx[i]; }),
+                     sum_of(patch.size, [&](std::size_t i) { return sx[i] * sy[i]; }),
+                     sum_of(patch.size, [&](std::size_t i) { return sy[i] * sy[i]; })};
+}
+
+SlantSums compare_slanted_patch(const ImageView& image, float u, float v, const PatchTemplate& patch,
+                                const PatchSlant& slant) {
+  const PatchRows relative = relative_patch(image, u, v, patch);
+  return {compare(relative, patch), sum_of(patch.size, [&](std::size_t i) { return slant.slope_x[i] * relative[i]; }),
+          sum_of(patch.size, [&](std::size_t i) { return slant.slope_y[i] * relative[i]; })};
+}
+
+PatchSums compare_patch(const ImageView& image, float u, float v, const PatchTemplate& patch) {
+  return compare(relative_patch(image, u, v, patch), patch);
 }
 
 }  // namespace pelorus::reference

@@ -70,6 +70,17 @@ TEST(Patch, VectorPathsEqualTheReferenceBitByBit) {
       EXPECT_EQ(sums.value, expected_sums.value);
       EXPECT_EQ(sums.sum, expected_sums.sum);
       EXPECT_EQ(sums.square, expected_sums.square);
+      PatchSlant slant;
+      PatchSlant expected_slant;
+      prepare_slant(patch, slant);
+      reference::prepare_slant(patch, expected_slant);
+      EXPECT_EQ(slant.structure, expected_slant.structure);
+      const SlantSums slanted = compare_slanted_patch(pyramid.level(0), v, u, patch, slant);
+      const SlantSums expected_slanted = reference::compare_slanted_patch(pyramid.level(0), v, u, patch, slant);
+      EXPECT_EQ(slanted.plain.gradient_u, expected_sums.gradient_u);
+      EXPECT_EQ(slanted.plain.square, expected_sums.square);
+      EXPECT_EQ(slanted.slope_x, expected_slanted.slope_x);
+      EXPECT_EQ(slanted.slope_y, expected_slanted.slope_y);
     }
   });
 }
