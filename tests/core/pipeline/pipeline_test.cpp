@@ -1,0 +1,134 @@
+#include "core/pipeline/pipeline.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/frontend/analytic_texture.h"
+
+namespace pelorus {
+namespace {
+
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+constexpr double kDisparity_px = 10.0;
+constexpr double kFlow_px = 2.5;
+const StereoRig kRig{kWidth, kHeight, 250.0, 159.5, 119.5, 0.12};  // the plane is at 3 m, a step 30 mm
+
+struct StereoImages {
+  Image left;
+  Image right;
+};
+
+// The camera moves to the right in front of a textured plane that faces it.
+StereoImages plane(int frame) {
+  const test::AnalyticTexture texture(11);
+  const double shift = kFlow_px * frame;
+  const auto seed = static_cast<unsigned>(10 * frame);
+  return {test::render(texture, kWidth, kHeight, 1.0, seed + 1,
+                       [&](double u, double v) {
+                         return test::TexturePlace{u + shift, v};
+                       }),
+          test::render(texture, kWidth, kHeight, 1.0, seed + 2, [&](double u, double v) {
+            return test::TexturePlace{u + shift + kDisparity_px, v};
+          })};
+}
+
+StereoImages grey() {
+  StereoImages images{Image(kWidth, kHeight), Image(kWidth, kHeight)};
+  for (Image* image : {&images.left, &images.right}) {
+    for (int v = 0; v < kHeight; ++v) std::fill_n(image->row(v), kWidth, std::uint8_t{128});
+  }
+  return images;
+}
+
+FrameResult step(Pipeline& pipeline, int frame, const StereoImages& images) {
+  return pipeline.step(
+      {static_cast<std::uint64_t>(frame), Timestamp{frame * 100'000'000LL}, images.left.view(), images.right.view()});
+}
+
+bool finite(const FrameResult& result) {
+  return result.T_world_cam.matrix().allFinite() && result.cov_T_world_cam.allFinite() &&
+         result.T_curr_prev.matrix().allFinite() && result.cov_T_curr_prev.allFinite();
+}
+
+void expect_equal(const FrameResult& a, const FrameResult& b) {
+  EXPECT_EQ(a.state, b.state);
+  EXPECT_EQ(a.pose_valid, b.pose_valid);
+  EXPECT_EQ(a.T_world_cam.matrix(), b.T_world_cam.matrix());
+  EXPECT_EQ(a.cov_T_world_cam, b.cov_T_world_cam);
+  EXPECT_EQ(a.T_curr_prev.matrix(), b.T_curr_prev.matrix());
+  EXPECT_EQ(a.cov_T_curr_prev, b.cov_T_curr_prev);
+  EXPECT_EQ(a.world_confidence, b.world_confidence);
+  EXPECT_EQ(a.objects_size, b.objects_size);
+  EXPECT_EQ(a.report.points_tracked, b.report.points_tracked);
+  EXPECT_EQ(a.report.points_started, b.report.points_started);
+  EXPECT_EQ(a.report.points_static, b.report.points_static);
+  EXPECT_EQ(a.report.points_outlier, b.report.points_outlier);
+  EXPECT_EQ(a.report.sigma_px, b.report.sigma_px);
+}
+
+TEST(Pipeline, FollowsTheCameraPastAPlaneAtRest) {
+  Pipeline pipeline({}, kRig);
+  FrameResult result;
+  for (int frame = 0; frame < 5; ++frame) {
+    result = step(pipeline, frame, plane(frame));
+    EXPECT_TRUE(result.pose_valid);
+    EXPECT_EQ(result.state == VisionState::init, frame == 0);
+  }
+  // 4 steps of 30 mm; 1 % of it, and depth uncertain by its deviation.
+  EXPECT_LT((result.T_world_cam.translation() - Eigen::Vector3d(0.12, 0, 0)).norm(), 0.01);
+  EXPECT_LT(rotation_angle_rad(result.T_world_cam.linear()), 0.005);
+  EXPECT_EQ(result.objects_size, 0);
+  EXPECT_EQ(result.reset_counter, 0);
+  EXPECT_GT(result.report.points_static, 50);
+}
+
+TEST(Pipeline, AGreyFrameIsSaidToBeLostAndTheNextGoodOnesGoOn) {
+  Pipeline pipeline({}, kRig);
+  for (int frame = 0; frame < 3; ++frame) (void)step(pipeline, frame, plane(frame));
+  for (int frame = 3; frame < 5; ++frame) {
+    const FrameResult lost = step(pipeline, frame, grey());
+    EXPECT_EQ(lost.state, VisionState::lost);
+    EXPECT_FALSE(lost.pose_valid);
+    EXPECT_TRUE(finite(lost));
+    EXPECT_EQ(lost.reset_counter, 1);  // one loss, however long
+  }
+  FrameResult result;
+  for (int frame = 5; frame < 8; ++frame) result = step(pipeline, frame, plane(frame));
+  EXPECT_TRUE(result.pose_valid);
+  EXPECT_TRUE(finite(result));
+  EXPECT_EQ(result.reset_counter, 1);
+}
+
+TEST(Pipeline, GreyFromTheStartIsNeverAGoodMotion) {
+  Pipeline pipeline({}, kRig);
+  (void)step(pipeline, 0, grey());
+  for (int frame = 1; frame < 4; ++frame) {
+    const FrameResult result = step(pipeline, frame, grey());
+    EXPECT_EQ(result.state, VisionState::lost);
+    EXPECT_FALSE(result.pose_valid);
+    EXPECT_TRUE(finite(result));
+  }
+}
+
+TEST(Pipeline, TwoInstancesGiveIdenticalResults) {
+  Pipeline first({}, kRig);
+  Pipeline second({}, kRig);
+  (void)step(first, 0, plane(0));
+  (void)step(second, 0, plane(0));
+  for (int frame = 1; frame < 5; ++frame) {
+    const StereoImages images = plane(frame);
+    expect_equal(step(first, frame, images), step(second, frame, images));
+  }
+}
+
+TEST(Pipeline, FramesThatWereMissedAreCountedAndBridged) {
+  Pipeline pipeline({}, kRig);
+  for (int frame = 0; frame < 3; ++frame) (void)step(pipeline, frame, plane(frame));
+  const FrameResult result = step(pipeline, 5, plane(5));
+  EXPECT_EQ(result.report.frames_missed, 2);
+  EXPECT_TRUE(result.pose_valid);
+  EXPECT_LT((result.T_world_cam.translation() - Eigen::Vector3d(0.15, 0, 0)).norm(), 0.01);
+}
+
+}  // namespace
+}  // namespace pelorus
