@@ -1,0 +1,200 @@
+#include "core/objects/registry.h"
+
+#include <gtest/gtest.h>
+
+#include "core/motion/repartition.h"
+#include "tests/support/point_world.h"
+
+namespace pelorus {
+namespace {
+
+using test::kRig;
+using test::PointWorld;
+using test::twist;
+using test::WorldView;
+
+constexpr double kSigma_px = 0.1;
+
+SurfDescriptor descriptor_of(std::uint64_t place) {
+  std::mt19937_64 random(place);
+  std::normal_distribution<float> gauss(0, 1);
+  SurfDescriptor d{};
+  float sum = 0;
+  for (float& x : d) {
+    x = gauss(random);
+    sum += x * x;
+  }
+  for (float& x : d) x /= std::sqrt(sum);
+  return d;
+}
+
+// The registry's passage through consecutive steps of a world of points, with the true camera poses.
+class Passage {
+ public:
+  explicit Passage(const PointWorld& world) : world_(world) {}
+
+  // `called_moving`: a body whose points are said to move, whatever they do.
+  void step(int frame, bool bodies_seen = true, int called_moving = -1) {
+    WorldView view = world_.observe(frame + 1, kSigma_px, kSigma_px);
+    if (!bodies_seen) keep_floor(view);
+    restore_bodies(view);
+    const std::size_t count = view.pairs.size();
+    std::vector<PointRole> roles(count);
+    std::vector<double> chi2(count);
+    repartition(kRig, view.pairs, static_motions(view), {}, roles, chi2);
+    std::vector<Track> tracks(count);
+    std::vector<const Track*> track_of_pair;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (view.body_of[i] == called_moving) roles[i] = PointRole::moving;
+      tracks[i].descriptor = descriptor_of(view.pairs[i].track.value % 1000);
+      tracks[i].has_descriptor = true;
+      track_of_pair.push_back(&tracks[i]);
+    }
+    WorldStep step;
+    step.time = Timestamp{frame * 100'000'000LL};
+    step.T_world_prev = view.T_world_cam[static_cast<std::size_t>(frame) - 1];
+    step.T_world_curr = view.T_world_cam.back();
+    step.seed = static_cast<std::uint64_t>(frame);
+    std::vector<BodyId> owner(count, kNoBody);
+    registry_.predict(step.T_world_prev, step.T_world_curr, step.dt_s);
+    registry_.claim(kRig, view.pairs, roles, chi2, step, {}, owner);
+    std::vector<PointIndex> open;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (roles[i] == PointRole::moving && owner[i] == kNoBody) open.push_back(static_cast<PointIndex>(i));
+    }
+    Partition groups;
+    if (!open.empty() && view.body_of[static_cast<std::size_t>(open.back())] > 0) {
+      for (int body = 1; body < static_cast<int>(view.M_world.size()); ++body) add_group(view, open, body, groups);
+    }
+    registry_.adopt(kRig, view.pairs, roles, groups, track_of_pair, step, {}, owner);
+    registry_.settle(kRig, view.pairs, roles, chi2, track_of_pair, step, {}, owner);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (owner[i] == kNoBody && roles[i] == PointRole::fixed) owner[i] = kWorldBody;
+      body_of_track_.resize(std::max(body_of_track_.size(), std::size_t{view.pairs[i].track.value} + 1), kNoBody);
+      body_of_track_[view.pairs[i].track.value] = owner[i];
+    }
+    view_ = std::move(view);
+  }
+  void forget_tracks() { body_of_track_.clear(); }
+  [[nodiscard]] std::span<const MovingBody> bodies() const { return registry_.bodies(); }
+  [[nodiscard]] const WorldView& view() const { return view_; }
+
+ private:
+  static void keep_floor(WorldView& view) {
+    std::erase_if(view.pairs, [&](const PointPair& p) {
+      return view.body_of[static_cast<std::size_t>(&p - view.pairs.data())] != 0;
+    });
+    std::erase_if(view.body_of, [](int body) { return body != 0; });
+  }
+  void restore_bodies(WorldView& view) const {
+    for (PointPair& pair : view.pairs) {
+      pair.previous_body = pair.track.value < body_of_track_.size() ? body_of_track_[pair.track.value] : kNoBody;
+    }
+  }
+  static StaticMotions static_motions(const WorldView& view) {
+    StaticMotions motions;
+    const std::size_t last = view.T_world_cam.size() - 1;
+    for (std::size_t j = 0; j <= kPastFrames && j < last; ++j) {
+      motions.T_curr_past[j] = view.T_world_cam[last].inverse() * view.T_world_cam[last - 1 - j];
+      ++motions.size;
+    }
+    return motions;
+  }
+  static void add_group(const WorldView& view, const std::vector<PointIndex>& open, int body, Partition& groups) {
+    Group group;
+    group.H_curr_prev = view.H_curr_prev(body);
+    for (const PointIndex i : open) {
+      if (view.body_of[static_cast<std::size_t>(i)] == body) group.members.push_back(i);
+    }
+    if (!group.members.empty()) groups.groups.push_back(group);
+  }
+
+  PointWorld world_;
+  Registry registry_{{}, {}, {}, {}, {}, {.recent_frames = 6, .key_frames = 4, .acceleration_prior = true}, {}, 1000};
+  std::vector<BodyId> body_of_track_;
+  WorldView view_;
+};
+
+PointWorld slow_camera(int floor_points) {
+  PointWorld world(floor_points);
+  world.twist_cam = twist(0.004, 0.002, 0.003, 0.0005, -0.001, 0.0005);
+  return world;
+}
+
+TEST(Registry, AMovingBodyIsBornConfirmedAndItsMotionIsTrue) {
+  PointWorld world = slow_camera(100);
+  world.add_body(40, {0, 0, 2.0}, 0.25, twist(0.02, 0.005, 0.01, 0, 0.02, 0));
+  Passage passage(world);
+  for (int frame = 1; frame <= 10; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  const MovingBody& body = passage.bodies()[0];
+  EXPECT_EQ(body.phase, ObjectPhase::confirmed);
+  EXPECT_EQ(body.id, BodyId{1});
+  EXPECT_GE(body.members.size(), 38U);
+  const Eigen::Vector3d center = body.T_world_obj * body.centroid_obj;
+  const Rigid3& M_true = passage.view().M_world[1];
+  // Depth of the centroid in one step: z^2 sqrt(2) sigma sqrt(2) / (f b sqrt(40)) = 1.3 mm.
+  EXPECT_LT((body.M_world * center - M_true * center).norm(), 4 * 0.0013);
+  EXPECT_LT(rotation_angle_rad(body.M_world.linear() * M_true.linear().transpose()), 0.01);
+}
+
+TEST(Registry, AGroupThatIsAtRestIsNeverConfirmed) {
+  PointWorld world = slow_camera(100);
+  world.add_body(40, {0, 0, 2.0}, 0.25, twist(0, 0, 0, 0, 0, 0));
+  Passage passage(world);
+  for (int frame = 1; frame <= 8; ++frame) {
+    passage.step(frame, true, 1);
+    ASSERT_EQ(passage.bodies().size(), 1U);
+    EXPECT_EQ(passage.bodies()[0].phase, ObjectPhase::tentative);
+  }
+}
+
+TEST(Registry, ABodyThatComesBackKeepsItsIdAndItsFrame) {
+  PointWorld world = slow_camera(100);
+  world.add_body(40, {-0.1, 0, 2.0}, 0.25, twist(0.015, 0, 0.005, 0, 0.01, 0));
+  Passage passage(world);
+  for (int frame = 1; frame <= 8; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  const Rigid3 T_before = passage.bodies()[0].T_world_obj;
+  const double cov_before = passage.bodies()[0].cov_T_world_obj.trace();
+  for (int frame = 9; frame <= 13; ++frame) passage.step(frame, false);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  EXPECT_EQ(passage.bodies()[0].phase, ObjectPhase::coasting);
+  EXPECT_FALSE(passage.bodies()[0].measured);
+  EXPECT_GT(passage.bodies()[0].cov_T_world_obj.trace(), cov_before);
+  passage.forget_tracks();
+  for (int frame = 14; frame <= 16; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  const MovingBody& body = passage.bodies()[0];
+  EXPECT_EQ(body.id, BodyId{1});
+  EXPECT_EQ(body.phase, ObjectPhase::confirmed);
+  Rigid3 T_true = T_before;
+  for (int frame = 9; frame <= 16; ++frame) T_true = passage.view().M_world[1] * T_true;
+  EXPECT_LT((body.T_world_obj.translation() - T_true.translation()).norm(), 0.01);
+  EXPECT_LT(rotation_angle_rad(body.T_world_obj.linear() * T_true.linear().transpose()), 0.03);
+}
+
+TEST(Registry, ABodyOutOfSightForLongEnds) {
+  PointWorld world = slow_camera(60);
+  world.add_body(40, {0, 0, 2.0}, 0.25, twist(0.02, 0, 0, 0, 0, 0));
+  Passage passage(world);
+  for (int frame = 1; frame <= 6; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  for (int frame = 7; frame <= 50; ++frame) passage.step(frame, false);
+  EXPECT_TRUE(passage.bodies().empty());
+}
+
+TEST(Registry, TwoHalvesOfOneBodyBecomeOneAndTwoAbreastStayTwo) {
+  for (const double gap_m : {0.02, 0.7}) {
+    PointWorld world = slow_camera(60);
+    const Vector6d step = twist(0.0, 0.02, 0.005, 0, 0, 0);
+    world.add_body(40, {-0.25 - gap_m / 2, 0, 2.0}, 0.25, step);
+    world.add_body(40, {0.25 + gap_m / 2, 0, 2.0}, 0.25, step);
+    Passage passage(world);
+    for (int frame = 1; frame <= 8; ++frame) passage.step(frame);
+    EXPECT_EQ(passage.bodies().size(), gap_m < 0.1 ? 1U : 2U) << "gap " << gap_m;
+  }
+}
+
+}  // namespace
+}  // namespace pelorus
