@@ -25,7 +25,7 @@ struct FrontEndConfig {
   int cell_rows = 12;
   double min_distance_px = 12.0;        // between points of the background
   double min_distance_object_px = 7.0;  // inside the outline of a body
-  int max_points_per_object = 90;
+  int max_points_per_object = 70;
   double forward_backward_px = 0.4;  // of tracks that no reference image confirms
   double min_disparity_px = 0.7;
   double max_disparity_change_px = 6.0;  // against the predicted disparity

@@ -69,6 +69,7 @@ double BodyWindow::accumulate_points(const StereoRig& rig) {
     block.terms = 0;
     std::array<int, kMaxWindowFrames> row{};
     double weight_sum = 0;
+    int count = 0;
     for (const Frame& frame : frames_) {
       if ((point.seen & (1u << frame.slot)) == 0u) continue;
       const Eigen::Vector3d p_cam = frame.T_cam_body * point.p_body;
@@ -78,6 +79,7 @@ double BodyWindow::accumulate_points(const StereoRig& rig) {
       const double w = frame.weight * robust_weight(frame.weight * chi2, config_.robust_chi2);
       weighted_chi2 += w * chi2;
       weight_sum += w;
+      ++count;
       const Eigen::Matrix3d J = rig.project_jacobian(p_cam);
       const Eigen::Matrix3d A = J * frame.T_cam_body.linear();
       const double w_px = w * inverse_variance;
@@ -96,7 +98,8 @@ double BodyWindow::accumulate_points(const StereoRig& rig) {
       reduced_.S.block<6, 6>(row[t], row[t]) += own;
       reduced_.g.segment<6>(row[t]) += w_px * B.transpose() * r;
     }
-    dof += std::max(0.0, 3.0 * weight_sum - 3.0);
+    // Each point's own three unknowns take their share of its measurements, whatever these weigh.
+    if (count > 1) dof += 3.0 * weight_sum * (count - 1) / count;
     V.diagonal().array() += 1e-9;
     block.V_inv = V.inverse();
     for (std::size_t i = 0; i < static_cast<std::size_t>(block.terms); ++i) {
