@@ -2,23 +2,21 @@
 
 #include <algorithm>
 
+#include "core/geometry/hull.h"
 #include "core/motion/stereo_transfer.h"
 
 namespace pelorus {
 namespace {
 
-Eigen::Vector3d median_point(PointPairs pairs, const Group& group) {
-  Eigen::Vector3d median;
-  std::vector<double> values(group.members.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t m = 0; m < values.size(); ++m) {
-      values[m] = pairs[static_cast<std::size_t>(group.members[m])].prev.p_cam[axis];
-    }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    median[axis] = *middle;
+// Least distance of the group's points from the hull of the body's, at the previous position.
+double gap_to_body(PointPairs pairs, const Group& group, const MovingBody& body) {
+  std::vector<Eigen::Vector3d> hull;
+  for (const PointIndex i : body.members) hull.push_back(pairs[static_cast<std::size_t>(i)].prev.p_cam);
+  double least_m = 1e30;
+  for (const PointIndex i : group.members) {
+    least_m = std::min(least_m, distance_to_hull(hull, pairs[static_cast<std::size_t>(i)].prev.p_cam));
   }
-  return median;
+  return least_m;
 }
 
 }  // namespace
@@ -27,13 +25,11 @@ IdentityMatch identify(const StereoRig& rig, PointPairs pairs, const Group& grou
                        const IdentityConfig& config) {
   IdentityMatch match;
   double best = config.gate_chi2_mean;
-  const Eigen::Vector3d center = median_point(pairs, group);
   for (std::size_t j = 0; j < bodies.size(); ++j) {
     const MovingBody& body = bodies[j];
     if (!body.measured) continue;  // bodies out of sight are re-identified, not continued
-    const double distance_m = (center - body.T_cam_obj * body.centroid_obj).norm();
-    const double reach_m = std::max(config.min_reach_m, (0.5 + config.reach_share) * body.extent_m.norm());
-    if (distance_m > reach_m) continue;
+    const double reach_m = std::max(config.min_reach_m, config.reach_share * body.extent_m.norm());
+    if (gap_to_body(pairs, group, body) > reach_m) continue;
     double sum = 0;
     double votes = 0;
     for (const PointIndex i : group.members) {

@@ -4,7 +4,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
+#include "core/geometry/hull.h"
 #include "core/motion/stereo_transfer.h"
 #include "core/objects/registry.h"
 #include "core/objects/spread.h"
@@ -31,9 +33,10 @@ bool Registry::part_of_another(const MovingBody& body) const {
   const Eigen::Vector3d center = body.T_world_obj * body.centroid_obj;
   return std::any_of(bodies_.begin(), bodies_.end(), [&](const MovingBody& other) {
     if (other.id == body.id || other.phase == ObjectPhase::tentative || !other.measured) return false;
-    const double reach_m = 0.75 * other.extent_m.norm();
-    return (other.T_world_obj * other.centroid_obj - center).norm() < reach_m &&
-           body.members.size() < other.members.size();
+    if (body.members.size() >= other.members.size()) return false;
+    std::vector<Eigen::Vector3d> hull;
+    for (const ModelPoint& point : other.model) hull.push_back(point.p_obj);
+    return distance_to_hull(hull, other.T_world_obj.inverse() * center) < config_.part_reach * other.extent_m.norm();
   });
 }
 
@@ -80,6 +83,31 @@ void Registry::coast(const WorldStep& world, MovingBody& body) const {
   const Matrix6d Ad = adjoint(body.T_world_obj);
   body.cov_T_world_obj += Ad * growth * Ad.transpose();
   body.cov_M_world += Ad * growth * Ad.transpose();
+}
+
+// A body whose points stand apart for some frames gives up all but the largest part; the rest find their own way as
+// new bodies.
+void Registry::split_apart(const StereoRig& rig, PointPairs pairs, std::span<BodyId> owner) {
+  const std::size_t known = bodies_.size();
+  for (std::size_t b = 0; b < known; ++b) {
+    MovingBody& body = bodies_[b];
+    part_.resize(body.members.size());
+    const int parts = separate_parts(rig, pairs, body.members, config_.clusters, part_);
+    const auto second = std::count(part_.begin(), part_.end(), 1);
+    const bool apart = parts > 1 && second >= config_.min_points && 4 * second >= std::ssize(part_);
+    body.frames_apart = apart ? body.frames_apart + 1 : 0;
+    if (body.frames_apart < config_.split_frames) continue;
+    std::size_t kept = 0;
+    for (std::size_t m = 0; m < part_.size(); ++m) {
+      if (part_[m] == 0) {
+        body.members[kept++] = body.members[m];
+      } else {
+        owner[static_cast<std::size_t>(body.members[m])] = kNoBody;
+      }
+    }
+    body.members.resize(kept);
+    body.frames_apart = 0;
+  }
 }
 
 void Registry::merge_alike(PointPairs pairs, std::span<BodyId> owner) {

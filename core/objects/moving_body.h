@@ -29,6 +29,7 @@ struct MovingBody {
   Timestamp last_seen;
   int frames_measured = 0;
   int frames_missed = 0;  // in a row
+  int frames_apart = 0;   // in a row: its points stand in separate parts
   double evidence = 0;    // sum of log-likelihood ratios, own motion against static
   bool measured = false;  // in this step
   Rigid3 T_cam_obj = Rigid3::Identity();

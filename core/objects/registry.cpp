@@ -64,39 +64,66 @@ void Registry::claim(const StereoRig& rig, PointPairs pairs, std::span<const Poi
 void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Partition& groups,
                      std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
                      std::span<BodyId> owner) {
-  std::vector<Rigid3> expected_T_cam_obj;
+  expected_T_cam_obj_.clear();
   for (const MovingBody& body : bodies_) {
-    expected_T_cam_obj.push_back(world.T_world_curr.inverse() * body.T_world_obj *
-                                 se3_exp(body.twist_obj * world.dt_s));
+    expected_T_cam_obj_.push_back(world.T_world_curr.inverse() * body.T_world_obj *
+                                  se3_exp(body.twist_obj * world.dt_s));
   }
+  if (steps.merge) split_apart(rig, pairs, owner);
   const std::size_t known = bodies_.size();
+  Group part_group;
   for (const Group& group : groups.groups) {
-    if (static_cast<int>(group.members.size()) < config_.min_points) continue;
-    const std::span<const MovingBody> earlier(bodies_.data(), known);
-    if (steps.identity_mismatch) {
-      const IdentityMatch match = identify(rig, pairs, group, earlier, identity_);
-      if (match.body >= 0) {
-        MovingBody& body = bodies_[static_cast<std::size_t>(match.body)];
-        for (const PointIndex i : group.members) {
-          if (transfer_chi2(rig, body.H_curr_prev, at(pairs, i)) > kChi2_3dof_999) continue;
-          body.members.push_back(i);
-          owner[static_cast<std::size_t>(i)] = body.id;
-        }
-        continue;
+    part_.resize(group.members.size());
+    const int parts = steps.merge ? separate_parts(rig, pairs, group.members, config_.clusters, part_) : 1;
+    if (!steps.merge) std::fill(part_.begin(), part_.end(), 0);
+    const auto size_of = [&](int p) { return static_cast<double>(std::count(part_.begin(), part_.end(), p)); };
+    double in_bodies = 0;
+    for (int p = 0; p < parts && size_of(p) >= config_.min_points; ++p) in_bodies += size_of(p);
+    const auto all = static_cast<double>(group.members.size());
+    // Points scattered over the scene that happen to agree fall into crumbs; bodies hold most of their group.
+    const int adopted = in_bodies >= config_.min_share_in_parts * all  ? parts
+                        : size_of(0) >= config_.min_share_of_one * all ? 1
+                                                                       : 0;
+    for (int p = 0; p < adopted && size_of(p) >= config_.min_points; ++p) {
+      part_group = group;
+      std::size_t kept = 0;
+      for (std::size_t m = 0; m < group.members.size(); ++m) {
+        if (part_[m] == p) part_group.members[kept++] = group.members[m];
       }
+      part_group.members.resize(kept);
+      adopt_group(rig, pairs, roles, part_group, track_of_pair, world, steps, known, owner);
     }
-    if (steps.reidentification) {
-      const Reidentified found = reidentify(rig, pairs, group, track_of_pair, earlier, expected_T_cam_obj, world.time,
-                                            world.seed, reidentification_);
-      if (found.body >= 0) {
-        resume(rig, pairs, group, found, world, owner);
-        continue;
-      }
-    }
-    if (spread_px(pairs, group.members) < config_.min_spread_px) continue;
-    if (static_inside(pairs, roles, group.members) > config_.max_static_inside) continue;
-    if (static_cast<int>(bodies_.size()) < kMaxObjects) give_birth(rig, pairs, group, world, owner);
   }
+}
+
+// Identity with a body in sight, else recognition of one that was out of sight, else a birth (paper 5.2.4).
+void Registry::adopt_group(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Group& group,
+                           std::span<const Track* const> track_of_pair, const WorldStep& world,
+                           const RegistrySteps& steps, std::size_t known, std::span<BodyId> owner) {
+  const std::span<const MovingBody> earlier(bodies_.data(), known);
+  if (steps.identity_mismatch) {
+    const IdentityMatch match = identify(rig, pairs, group, earlier, identity_);
+    if (match.body >= 0) {
+      MovingBody& body = bodies_[static_cast<std::size_t>(match.body)];
+      for (const PointIndex i : group.members) {
+        if (transfer_chi2(rig, body.H_curr_prev, at(pairs, i)) > kChi2_3dof_999) continue;
+        body.members.push_back(i);
+        owner[static_cast<std::size_t>(i)] = body.id;
+      }
+      return;
+    }
+  }
+  if (steps.reidentification) {
+    const Reidentified found = reidentify(rig, pairs, group, track_of_pair, earlier, expected_T_cam_obj_, world.time,
+                                          world.seed, reidentification_);
+    if (found.body >= 0) {
+      resume(rig, pairs, group, found, world, owner);
+      return;
+    }
+  }
+  if (spread_px(pairs, group.members) < config_.min_spread_px) return;
+  if (static_inside(pairs, roles, group.members) > config_.max_static_inside) return;
+  if (static_cast<int>(bodies_.size()) < kMaxObjects) give_birth(rig, pairs, group, world, owner);
 }
 
 // Paper section 4: the frame of the object is fixed at its birth b; here with axes parallel to the world's.

@@ -3,6 +3,7 @@
 // membership, identity of new groups, re-identification, refinement, birth, coasting, end. Thread-bound.
 // Nothing is an object before it has points, frames and spread enough, and evidence that it moves.
 
+#include "core/motion/clusters.h"
 #include "core/objects/identity.h"
 #include "core/objects/membership.h"
 #include "core/objects/merge.h"
@@ -12,6 +13,7 @@ namespace pelorus {
 
 struct RegistryConfig {
   int min_points = 6;               // of a birth
+  double part_reach = 0.35;         // of a body's extent: a smaller group this near its hull is a part of it
   double max_static_inside = 0.6;   // static points inside its outline, per member: more, and it is no one body
   double min_spread_px = 4.0;       // deviation of its points along their second axis in the image
   int confirm_frames = 3;           // measured frames before a body is an object
@@ -24,6 +26,10 @@ struct RegistryConfig {
   double sigma_acceleration_mps2 = 0.3;  // growth of the covariance while coasting
   double sigma_acceleration_radps2 = 0.3;
   double point_gate_chi2 = 12.0;  // mean over its frames above which a point leaves the body's window
+  ClustersConfig clusters;
+  double min_share_in_parts = 0.7;  // of a group in parts large enough to be bodies, else it is scatter ...
+  double min_share_of_one = 0.5;    // ... unless the largest part alone holds this share
+  int split_frames = 5;             // in a row in which a body stands apart before it is two
   int max_model_points = 250;
 };
 
@@ -77,6 +83,10 @@ class Registry {
   [[nodiscard]] bool moved_significantly(const StereoRig& rig, const WorldStep& world, const MovingBody& body) const;
   [[nodiscard]] bool part_of_another(const MovingBody& body) const;
   void coast(const WorldStep& world, MovingBody& body) const;
+  void adopt_group(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Group& group,
+                   std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
+                   std::size_t known, std::span<BodyId> owner);
+  void split_apart(const StereoRig& rig, PointPairs pairs, std::span<BodyId> owner);
   void give_birth(const StereoRig& rig, PointPairs pairs, const Group& group, const WorldStep& world,
                   std::span<BodyId> owner);
   void resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
@@ -92,6 +102,8 @@ class Registry {
   BodyWindowConfig window_config_;
   TwoFrameBa two_frame_ba_;
   std::vector<MovingBody> bodies_;
+  std::vector<Rigid3> expected_T_cam_obj_;
+  std::vector<std::int32_t> part_;
   std::vector<WindowObservation> observations_;
   std::vector<std::array<std::int32_t, 3>> alike_;  // ids of two bodies and the frames they moved alike in a row
   std::int32_t next_id_ = 1;
