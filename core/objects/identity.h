@@ -9,7 +9,7 @@ namespace pelorus {
 
 struct IdentityConfig {
   double gate_chi2_mean = 6.0;  // mean mismatch of the group's points, 3 degrees of freedom each
-  double reach_share = 0.7;     // of the body's extent beyond its hull within which a group can belong to it
+  double reach_share = 0.3;     // of the body's extent beyond its hull within which a group can belong to it
   double min_reach_m = 0.10;
   double vote_chi2 = 2.0;  // what a unanimous vote of former members takes off the mismatch
 };

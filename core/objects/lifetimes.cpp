@@ -55,6 +55,7 @@ void Registry::weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<
   }
   const bool enough = body.frames_measured >= config_.confirm_frames &&
                       static_cast<int>(body.members.size()) >= config_.min_points &&
+                      body.frames_measured * static_cast<int>(body.members.size()) >= config_.confirm_point_frames &&
                       spread_px(pairs, body.members) >= config_.min_spread_px;
   if (enough && body.evidence > config_.confirm_evidence && moved_significantly(rig, world, body) &&
       !part_of_another(body)) {
@@ -68,18 +69,22 @@ void Registry::coast(const WorldStep& world, MovingBody& body) const {
   if (body.phase == ObjectPhase::tentative) {
     if (body.frames_missed > config_.tentative_patience_frames) body.phase = ObjectPhase::ended;
   } else {
-    body.phase = seconds(world.time - body.last_seen) > config_.coast_s ? ObjectPhase::ended : ObjectPhase::coasting;
+    // No longer than it had been in sight: a short acquaintance foretells little.
+    const double seen_s = seconds(body.last_seen - body.first_seen);
+    const double away_s = seconds(world.time - body.last_seen);
+    body.phase = away_s > std::min(config_.coast_s, seen_s) ? ObjectPhase::ended : ObjectPhase::coasting;
   }
   const Rigid3 before = body.T_world_obj;
   body.T_world_obj = before * se3_exp(body.twist_obj * world.dt_s);
   body.M_world = body.T_world_obj * before.inverse();
   body.T_cam_obj = world.T_world_curr.inverse() * body.T_world_obj;
-  const double away_s = seconds(world.time - body.last_seen);
-  const double grown_m = config_.sigma_acceleration_mps2 * std::pow(away_s, 1.5);
-  const double grown_rad = config_.sigma_acceleration_radps2 * std::pow(away_s, 1.5);
+  const double missing_s = seconds(world.time - body.last_seen);
+  const double grown_m = config_.sigma_acceleration_mps2 * std::pow(missing_s, 1.5);
+  const double grown_rad = config_.sigma_acceleration_radps2 * std::pow(missing_s, 1.5);
   Matrix6d growth = Matrix6d::Zero();
-  growth.topLeftCorner<3, 3>().diagonal().setConstant(grown_m * grown_m * world.dt_s / std::max(away_s, 1e-3));
-  growth.bottomRightCorner<3, 3>().diagonal().setConstant(grown_rad * grown_rad * world.dt_s / std::max(away_s, 1e-3));
+  growth.topLeftCorner<3, 3>().diagonal().setConstant(grown_m * grown_m * world.dt_s / std::max(missing_s, 1e-3));
+  growth.bottomRightCorner<3, 3>().diagonal().setConstant(grown_rad * grown_rad * world.dt_s /
+                                                          std::max(missing_s, 1e-3));
   const Matrix6d Ad = adjoint(body.T_world_obj);
   body.cov_T_world_obj += Ad * growth * Ad.transpose();
   body.cov_M_world += Ad * growth * Ad.transpose();
@@ -94,7 +99,7 @@ void Registry::split_apart(const StereoRig& rig, PointPairs pairs, std::span<Bod
     part_.resize(body.members.size());
     const int parts = separate_parts(rig, pairs, body.members, config_.clusters, part_);
     const auto second = std::count(part_.begin(), part_.end(), 1);
-    const bool apart = parts > 1 && second >= config_.min_points && 4 * second >= std::ssize(part_);
+    const bool apart = parts > 1 && second >= 2 * config_.min_points && 4 * second >= std::ssize(part_);
     body.frames_apart = apart ? body.frames_apart + 1 : 0;
     if (body.frames_apart < config_.split_frames) continue;
     std::size_t kept = 0;

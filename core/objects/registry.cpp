@@ -81,6 +81,7 @@ void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const Poi
     for (int p = 0; p < parts && size_of(p) >= config_.min_points; ++p) in_bodies += size_of(p);
     const auto all = static_cast<double>(group.members.size());
     // Points scattered over the scene that happen to agree fall into crumbs; bodies hold most of their group.
+    if (static_inside(pairs, roles, group.members) > config_.max_static_inside) continue;
     const int adopted = in_bodies >= config_.min_share_in_parts * all  ? parts
                         : size_of(0) >= config_.min_share_of_one * all ? 1
                                                                        : 0;
