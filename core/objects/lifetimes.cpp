@@ -36,7 +36,8 @@ bool Registry::part_of_another(const MovingBody& body) const {
     if (body.members.size() >= other.members.size()) return false;
     std::vector<Eigen::Vector3d> hull;
     for (const ModelPoint& point : other.model) hull.push_back(point.p_obj);
-    return distance_to_hull(hull, other.T_world_obj.inverse() * center) < config_.part_reach * other.extent_m.norm();
+    return distance_to_hull(hull, other.T_world_obj.inverse() * center) <
+           config_.part_reach_share * other.extent_m.norm();
   });
 }
 

@@ -13,7 +13,7 @@ namespace pelorus {
 
 struct RegistryConfig {
   int min_points = 6;               // of a birth
-  double part_reach = 0.35;         // of a body's extent: a smaller group this near its hull is a part of it
+  double part_reach_share = 0.35;   // of a body's extent: a smaller group this near its hull is a part of it
   double max_static_inside = 0.6;   // static points inside its outline, per member: more, and it is no one body
   double min_spread_px = 4.0;       // deviation of its points along their second axis in the image
   int confirm_frames = 3;           // measured frames before a body is an object
@@ -26,7 +26,6 @@ struct RegistryConfig {
   double coast_s = 4.0;                  // out of sight before a confirmed body ends
   double sigma_acceleration_mps2 = 0.3;  // growth of the covariance while coasting
   double sigma_acceleration_radps2 = 0.3;
-  double point_gate_chi2 = 12.0;  // mean over its frames above which a point leaves the body's window
   ClustersConfig clusters;
   double min_share_in_parts = 0.7;  // of a group in parts large enough to be bodies, else it is scatter ...
   double min_share_of_one = 0.5;    // ... unless the largest part alone holds this share

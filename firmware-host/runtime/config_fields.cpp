@@ -229,9 +229,11 @@ void list(FieldList& f, ReidentificationConfig& c) {
 void list(FieldList& f, RegistryConfig& c) {
   f.section("registry");
   f.add("min_points", c.min_points, 3, 1000);
+  f.add("part_reach_share", c.part_reach_share, 0, 10);
   f.add("max_static_inside", c.max_static_inside, 0, 100);
   f.add("min_spread_px", c.min_spread_px, 0, 1000);
   f.add("confirm_frames", c.confirm_frames, 1, 1000);
+  f.add("confirm_point_frames", c.confirm_point_frames, 0, 100000);
   f.add("confirm_evidence", c.confirm_evidence, 0, 1e6);
   f.add("evidence_cap", c.evidence_cap, 0, 1e6);
   f.add("confirm_sigmas", c.confirm_sigmas, 0, 1000);
@@ -240,7 +242,12 @@ void list(FieldList& f, RegistryConfig& c) {
   f.add("coast_s", c.coast_s, 0, 600);
   f.add("sigma_acceleration_mps2", c.sigma_acceleration_mps2, 1e-4, 1000);
   f.add("sigma_acceleration_radps2", c.sigma_acceleration_radps2, 1e-4, 1000);
-  f.add("point_gate_chi2", c.point_gate_chi2, 0.1, kMaxChi2);
+  f.add("gap_min_m", c.clusters.min_gap_m, 0, 100);
+  f.add("gap_spacings", c.clusters.gap_spacings, 0, 1000);
+  f.add("gap_sigmas", c.clusters.gap_sigmas, 0, 1000);
+  f.add("min_share_in_parts", c.min_share_in_parts, 0, 1);
+  f.add("min_share_of_one", c.min_share_of_one, 0, 1);
+  f.add("split_frames", c.split_frames, 1, 1000);
   f.add("max_model_points", c.max_model_points, 4, 5000);
 }
 
