@@ -135,7 +135,7 @@ TEST(ConfigFields, HoldEveryMemberOfEveryStruct) {
       {"identity", member_count<IdentityConfig>()},
       {"merge", member_count<MergeConfig>()},
       {"reidentification", member_count<ReidentificationConfig>()},
-      {"registry", member_count<RegistryConfig>()},
+      {"registry", member_count<RegistryConfig>() - 1 + member_count<ClustersConfig>()},
       {"object_window", member_count<BodyWindowConfig>()},
   };
   PipelineConfig defaults;
