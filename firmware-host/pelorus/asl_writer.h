@@ -1,8 +1,8 @@
 #pragma once
 // Writes a synthetic dive as an EuRoC ASL folder: mav0/cam0, mav0/cam1 (data.csv, sensor.yaml, data/<ns>.png),
 // mav0/state_groundtruth_estimate0 (T_world_body, body = rectified left camera) and, per moving body k = 1, 2, ...,
-// mav0/object<k>/data.csv (T_world_obj, visible_px) and body.csv (name, box). Nothing bears the final name before everything is written.
-// Thread-bound.
+// mav0/object<k>/data.csv (T_world_obj, visible_px) and body.csv (name, box). Nothing bears the final name before
+// everything is written. Thread-bound.
 
 #include <filesystem>
 #include <fstream>
