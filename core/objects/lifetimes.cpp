@@ -55,7 +55,7 @@ void Registry::weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<
     return;
   }
   const bool enough = body.frames_measured >= config_.confirm_frames &&
-                      static_cast<int>(body.members.size()) >= config_.min_points &&
+                      static_cast<int>(body.members.size()) >= config_.confirm_points &&
                       body.frames_measured * static_cast<int>(body.members.size()) >= config_.confirm_point_frames &&
                       spread_px(pairs, body.members) >= config_.min_spread_px;
   if (enough && body.evidence > config_.confirm_evidence && moved_significantly(rig, world, body) &&

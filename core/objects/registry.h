@@ -17,6 +17,7 @@ struct RegistryConfig {
   double max_static_inside = 0.6;   // static points inside its outline, per member: more, and it is no one body
   double min_spread_px = 4.0;       // deviation of its points along their second axis in the image
   int confirm_frames = 3;           // measured frames before a body is an object
+  int confirm_points = 8;           // that support it in the frame of its confirmation
   int confirm_point_frames = 50;    // and points times frames: few points must persist longer
   double confirm_evidence = 150.0;  // log-likelihood ratio of own motion against static, summed
   double evidence_cap = 20.0;       // per point and frame

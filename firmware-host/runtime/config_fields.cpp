@@ -233,6 +233,7 @@ void list(FieldList& f, RegistryConfig& c) {
   f.add("max_static_inside", c.max_static_inside, 0, 100);
   f.add("min_spread_px", c.min_spread_px, 0, 1000);
   f.add("confirm_frames", c.confirm_frames, 1, 1000);
+  f.add("confirm_points", c.confirm_points, 3, 1000);
   f.add("confirm_point_frames", c.confirm_point_frames, 0, 100000);
   f.add("confirm_evidence", c.confirm_evidence, 0, 1e6);
   f.add("evidence_cap", c.evidence_cap, 0, 1e6);
