@@ -41,6 +41,37 @@ double robust_weight(double chi2, double scale) {
   return 1.0 / (s * s);
 }
 
+// Reduced normal equations of the motion.
+struct Normal {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d gradient = Vector6d::Zero();
+  double weighted_chi2 = 0;
+  double weight_sum = 0;
+};
+
+// Moves the point to its best place under the present motion (its own 3x3 step) and adds its share to the equations.
+void accumulate(const StereoRig& rig, const Rigid3& H, const PointPair& pair, double robust_chi2,
+                Eigen::Vector3d& z_hat_px, Normal& normal) {
+  const PointTerm first = linearize(rig, H, pair, z_hat_px);
+  if (!first.usable) return;
+  const Eigen::Matrix3d V_first = Eigen::Matrix3d::Identity() + first.A.transpose() * first.A;
+  z_hat_px += V_first.inverse() * (first.r_prev + first.A.transpose() * first.r_curr);
+  const PointTerm term = linearize(rig, H, pair, z_hat_px);
+  if (!term.usable) {
+    z_hat_px = pair.prev.z_px;
+    return;
+  }
+  const double w = robust_weight(term.chi2, robust_chi2);
+  const double w_px = w / (pair.sigma_px * pair.sigma_px);
+  const Eigen::Matrix3d V_inv = (Eigen::Matrix3d::Identity() + term.A.transpose() * term.A).inverse();
+  const Eigen::Matrix<double, 6, 3> coupling = term.B.transpose() * term.A;
+  const Eigen::Matrix<double, 6, 3> W = coupling * V_inv;
+  normal.information += w_px * (term.B.transpose() * term.B - W * coupling.transpose());
+  normal.gradient += w_px * (term.B.transpose() * term.r_curr - W * (term.r_prev + term.A.transpose() * term.r_curr));
+  normal.weighted_chi2 += w * term.chi2;
+  normal.weight_sum += w;
+}
+
 }  // namespace
 
 TwoFrameBa::TwoFrameBa(const TwoFrameBaConfig& config, int capacity) : config_(config) {
@@ -66,42 +97,19 @@ MotionFit TwoFrameBa::run(const StereoRig& rig, PointPairs pairs, std::span<cons
   }
 
   fit.outcome = StageOutcome::not_converged;
-  Matrix6d information = Matrix6d::Zero();
-  double weighted_chi2 = 0;
-  double weight_sum = 0;
+  Normal normal;
   for (int iteration = 0; iteration < config_.max_iterations; ++iteration) {
-    information.setZero();
-    Vector6d gradient = Vector6d::Zero();
-    weighted_chi2 = weight_sum = 0;
-    // Points first move to their best place under the present motion (their own 3x3 step), then the reduced
-    // system of the motion follows: one Gauss-Newton step of the full problem.
+    normal = Normal{};
     for (std::size_t i = 0; i < used_.size(); ++i) {
-      const PointPair& pair = pairs[static_cast<std::size_t>(used_[i])];
-      const PointTerm first = linearize(rig, fit.H_curr_prev, pair, z_hat_px_[i]);
-      if (!first.usable) continue;
-      const Eigen::Matrix3d V_first = Eigen::Matrix3d::Identity() + first.A.transpose() * first.A;
-      z_hat_px_[i] += V_first.inverse() * (first.r_prev + first.A.transpose() * first.r_curr);
-      const PointTerm term = linearize(rig, fit.H_curr_prev, pair, z_hat_px_[i]);
-      if (!term.usable) {
-        z_hat_px_[i] = pair.prev.z_px;
-        continue;
-      }
-      const double w = robust_weight(term.chi2, config_.robust_chi2);
-      const double w_px = w / (pair.sigma_px * pair.sigma_px);
-      const Eigen::Matrix3d V_inv = (Eigen::Matrix3d::Identity() + term.A.transpose() * term.A).inverse();
-      const Eigen::Matrix<double, 6, 3> BtA = term.B.transpose() * term.A;
-      const Eigen::Matrix<double, 6, 3> W = BtA * V_inv;
-      information += w_px * (term.B.transpose() * term.B - W * BtA.transpose());
-      gradient += w_px * (term.B.transpose() * term.r_curr - W * (term.r_prev + term.A.transpose() * term.r_curr));
-      weighted_chi2 += w * term.chi2;
-      weight_sum += w;
+      accumulate(rig, fit.H_curr_prev, pairs[static_cast<std::size_t>(used_[i])], config_.robust_chi2, z_hat_px_[i],
+                 normal);
     }
-    const Eigen::LDLT<Matrix6d> solver(information);
+    const Eigen::LDLT<Matrix6d> solver(normal.information);
     if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-12)) {
       fit.outcome = StageOutcome::degenerate;
       return fit;
     }
-    const Vector6d xi = solver.solve(gradient);
+    const Vector6d xi = solver.solve(normal.gradient);
     fit.H_curr_prev = se3_exp(xi) * fit.H_curr_prev;
     if (xi.norm() < config_.converged_update) {
       fit.outcome = StageOutcome::ok;
@@ -110,9 +118,9 @@ MotionFit TwoFrameBa::run(const StereoRig& rig, PointPairs pairs, std::span<cons
   }
 
   // 3 N measurements of the transfer, 6 spent on the motion; the kernel's loss of weight is divided out.
-  const double dof = std::max(1.0, 3.0 * weight_sum - 6.0);
-  const double variance_scale = weighted_chi2 / dof;
-  fit.cov_H = information.inverse() * std::max(0.01, variance_scale);
+  const double dof = std::max(1.0, 3.0 * normal.weight_sum - 6.0);
+  const double variance_scale = normal.weighted_chi2 / dof;
+  fit.cov_H = normal.information.inverse() * std::max(0.01, variance_scale);
   const double sigma_px = pairs[static_cast<std::size_t>(used_.front())].sigma_px;
   fit.rms_px = sigma_px * std::sqrt(variance_scale);
   for (const PointIndex m : members) {

@@ -100,7 +100,8 @@ void Registry::split_apart(const StereoRig& rig, PointPairs pairs, std::span<Bod
     part_.resize(body.members.size());
     const int parts = separate_parts(rig, pairs, body.members, config_.clusters, part_);
     const auto second = std::count(part_.begin(), part_.end(), 1);
-    const bool apart = parts > 1 && second >= 2 * config_.min_points && 4 * second >= std::ssize(part_);
+    const bool apart = parts > 1 && second >= std::ptrdiff_t{2} * config_.min_points &&
+                       std::ptrdiff_t{4} * second >= std::ssize(part_);
     body.frames_apart = apart ? body.frames_apart + 1 : 0;
     if (body.frames_apart < config_.split_frames) continue;
     std::size_t kept = 0;

@@ -64,9 +64,9 @@ void Registry::claim(const StereoRig& rig, PointPairs pairs, std::span<const Poi
 void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Partition& groups,
                      std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
                      std::span<BodyId> owner) {
-  expected_T_cam_obj_.clear();
+  T_cam_obj_expected_.clear();
   for (const MovingBody& body : bodies_) {
-    expected_T_cam_obj_.push_back(world.T_world_curr.inverse() * body.T_world_obj *
+    T_cam_obj_expected_.push_back(world.T_world_curr.inverse() * body.T_world_obj *
                                   se3_exp(body.twist_obj * world.dt_s));
   }
   if (steps.merge) split_apart(rig, pairs, owner);
@@ -115,7 +115,7 @@ void Registry::adopt_group(const StereoRig& rig, PointPairs pairs, std::span<con
     }
   }
   if (steps.reidentification) {
-    const Reidentified found = reidentify(rig, pairs, group, track_of_pair, earlier, expected_T_cam_obj_, world.time,
+    const Reidentified found = reidentify(rig, pairs, group, track_of_pair, earlier, T_cam_obj_expected_, world.time,
                                           world.seed, reidentification_);
     if (found.body >= 0) {
       resume(rig, pairs, group, found, world, owner);

@@ -18,7 +18,7 @@ struct RegistryConfig {
   double min_spread_px = 4.0;       // deviation of its points along their second axis in the image
   int confirm_frames = 3;           // measured frames before a body is an object
   int confirm_points = 8;           // that support it in the frame of its confirmation
-  int confirm_point_frames = 50;    // and points times frames: few points must persist longer
+  int confirm_point_frames = 60;    // and points times frames: few points must persist longer
   double confirm_evidence = 150.0;  // log-likelihood ratio of own motion against static, summed
   double evidence_cap = 20.0;       // per point and frame
   double confirm_sigmas = 6.0;      // displacement since birth over its deviation
@@ -103,7 +103,7 @@ class Registry {
   BodyWindowConfig window_config_;
   TwoFrameBa two_frame_ba_;
   std::vector<MovingBody> bodies_;
-  std::vector<Rigid3> expected_T_cam_obj_;
+  std::vector<Rigid3> T_cam_obj_expected_;
   std::vector<std::int32_t> part_;
   std::vector<WindowObservation> observations_;
   std::vector<std::array<std::int32_t, 3>> alike_;  // ids of two bodies and the frames they moved alike in a row

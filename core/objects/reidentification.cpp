@@ -98,7 +98,7 @@ std::optional<Rigid3> fit_pose(const StereoRig& rig, const std::vector<ModelMatc
 
 Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& group,
                         std::span<const Track* const> track_of_pair, std::span<const MovingBody> bodies,
-                        std::span<const Rigid3> expected_T_cam_obj, Timestamp now, std::uint64_t seed,
+                        std::span<const Rigid3> T_cam_obj_expected, Timestamp now, std::uint64_t seed,
                         const ReidentificationConfig& config) {
   Reidentified found;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -108,7 +108,7 @@ Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& gro
     const MovingBody& body = bodies[j];
     if (body.phase != ObjectPhase::coasting) continue;
     const double gate_m = config.gate_m + config.growth_mps * seconds(now - body.last_seen) + body.extent_m.norm() / 2;
-    if ((expected_T_cam_obj[j] * body.centroid_obj - center).norm() > gate_m) continue;
+    if ((T_cam_obj_expected[j] * body.centroid_obj - center).norm() > gate_m) continue;
     const auto matches = match_model(pairs, group, track_of_pair, body, config);
     if (static_cast<int>(matches.size()) < config.min_matches) continue;
     int count = 0;

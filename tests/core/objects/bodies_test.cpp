@@ -190,7 +190,7 @@ TEST(Merge, MismatchGrowsWithDisplacementAndWithRotationInDeviations) {
 struct Recognition {
   WorldView view = two_bodies(0.3, twist(0.03, 0, 0.02, 0.01, 0.02, 0), twist(0, 0.03, 0, 0, 0, 0));
   std::vector<MovingBody> bodies;
-  std::vector<Rigid3> expected_T_cam_obj;
+  std::vector<Rigid3> T_cam_obj_expected;
   std::vector<Track> tracks;
   std::vector<const Track*> track_of_pair;
   Timestamp now{2'000'000'000};
@@ -200,7 +200,7 @@ struct Recognition {
       bodies.push_back(body_known(view, number));
       bodies.back().phase = ObjectPhase::coasting;
       bodies.back().last_seen = Timestamp{1'000'000'000};
-      expected_T_cam_obj.push_back(Rigid3(Eigen::Translation3d(0.1, -0.1, 0)) * bodies.back().T_cam_obj);
+      T_cam_obj_expected.push_back(Rigid3(Eigen::Translation3d(0.1, -0.1, 0)) * bodies.back().T_cam_obj);
     }
     tracks.resize(view.pairs.size());
     for (std::size_t i = 0; i < tracks.size(); ++i) {
@@ -214,7 +214,7 @@ struct Recognition {
   Reidentified run(int number) {
     Group group;
     group.members = view.members(number);
-    return reidentify(kRig, view.pairs, group, track_of_pair, bodies, expected_T_cam_obj, now, 1, {});
+    return reidentify(kRig, view.pairs, group, track_of_pair, bodies, T_cam_obj_expected, now, 1, {});
   }
 };
 
@@ -255,7 +255,7 @@ TEST(Reidentification, ABodyInSightOrExpectedElsewhereIsNotACandidate) {
   recognition.bodies[0].phase = ObjectPhase::confirmed;
   EXPECT_EQ(recognition.run(1).body, -1);
   recognition.bodies[0].phase = ObjectPhase::coasting;
-  recognition.expected_T_cam_obj[0] = Rigid3(Eigen::Translation3d(3, 0, 0)) * recognition.expected_T_cam_obj[0];
+  recognition.T_cam_obj_expected[0] = Rigid3(Eigen::Translation3d(3, 0, 0)) * recognition.T_cam_obj_expected[0];
   EXPECT_EQ(recognition.run(1).body, -1);
 }
 
