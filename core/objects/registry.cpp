@@ -24,6 +24,24 @@ Eigen::Vector3d robust_centroid(std::vector<Eigen::Vector3d>& points) {
   return centroid;
 }
 
+// The model's entry for a track: a new one takes the place of the longest unseen when the model is full.
+ModelPoint& model_entry(std::vector<ModelPoint>& model, const Track& track, int capacity) {
+  const auto known = std::find_if(model.begin(), model.end(), [&](const ModelPoint& m) { return m.track == track.id; });
+  if (known != model.end()) return *known;
+  ModelPoint* entry = nullptr;
+  if (static_cast<int>(model.size()) >= capacity) {
+    entry = &*std::min_element(model.begin(), model.end(),
+                               [](const ModelPoint& a, const ModelPoint& b) { return a.last_frame < b.last_frame; });
+  } else {
+    entry = &model.emplace_back();
+  }
+  entry->track = track.id;
+  entry->descriptor = track.descriptor;
+  entry->laplacian = track.laplacian;
+  entry->has_descriptor = track.has_descriptor;
+  return *entry;
+}
+
 }  // namespace
 
 Registry::Registry(const RegistryConfig& config, const MembershipConfig& membership, const IdentityConfig& identity,
@@ -241,23 +259,10 @@ void Registry::remember_points(PointPairs pairs, std::span<const Track* const> t
     const BodyPoint* refined = body.window.find(pair.track);
     const Eigen::Vector3d p = refined != nullptr ? refined->p_body : Eigen::Vector3d(T_obj_cam * pair.curr.p_cam);
     p_obj.push_back(p);
-    auto known =
-        std::find_if(body.model.begin(), body.model.end(), [&](const ModelPoint& m) { return m.track == pair.track; });
-    if (known == body.model.end()) {
-      if (static_cast<int>(body.model.size()) >= config_.max_model_points) {
-        known = std::min_element(body.model.begin(), body.model.end(),
-                                 [](const ModelPoint& a, const ModelPoint& b) { return a.last_frame < b.last_frame; });
-      } else {
-        known = body.model.insert(body.model.end(), ModelPoint{});
-      }
-      const Track& track = *track_of_pair[static_cast<std::size_t>(i)];
-      known->track = pair.track;
-      known->descriptor = track.descriptor;
-      known->laplacian = track.laplacian;
-      known->has_descriptor = track.has_descriptor;
-    }
-    known->p_obj = p;
-    known->last_frame = step_;
+    const Track& track = *track_of_pair[static_cast<std::size_t>(i)];
+    ModelPoint& known = model_entry(body.model, track, config_.max_model_points);
+    known.p_obj = p;
+    known.last_frame = step_;
   }
   Eigen::AlignedBox3d box;
   for (const auto& p : p_obj) box.extend(p);
