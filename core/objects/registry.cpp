@@ -25,8 +25,8 @@ Eigen::Vector3d robust_centroid(std::vector<Eigen::Vector3d>& points) {
 }
 
 // The model's entry for a track: a new one takes the place of the longest unseen when the model is full.
-ModelPoint& model_entry(std::vector<ModelPoint>& model, const Track& track, int capacity) {
-  const auto known = std::find_if(model.begin(), model.end(), [&](const ModelPoint& m) { return m.track == track.id; });
+ModelPoint& model_entry(std::vector<ModelPoint>& model, TrackId id, const Track& track, int capacity) {
+  const auto known = std::find_if(model.begin(), model.end(), [&](const ModelPoint& m) { return m.track == id; });
   if (known != model.end()) return *known;
   ModelPoint* entry = nullptr;
   if (static_cast<int>(model.size()) >= capacity) {
@@ -35,7 +35,7 @@ ModelPoint& model_entry(std::vector<ModelPoint>& model, const Track& track, int 
   } else {
     entry = &model.emplace_back();
   }
-  entry->track = track.id;
+  entry->track = id;
   entry->descriptor = track.descriptor;
   entry->laplacian = track.laplacian;
   entry->has_descriptor = track.has_descriptor;
@@ -260,7 +260,7 @@ void Registry::remember_points(PointPairs pairs, std::span<const Track* const> t
     const Eigen::Vector3d p = refined != nullptr ? refined->p_body : Eigen::Vector3d(T_obj_cam * pair.curr.p_cam);
     p_obj.push_back(p);
     const Track& track = *track_of_pair[static_cast<std::size_t>(i)];
-    ModelPoint& known = model_entry(body.model, track, config_.max_model_points);
+    ModelPoint& known = model_entry(body.model, pair.track, track, config_.max_model_points);
     known.p_obj = p;
     known.last_frame = step_;
   }
