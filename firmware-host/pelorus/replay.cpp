@@ -50,6 +50,10 @@ Result<int> run_verb(const ReplayArguments& arguments) {
   ProgressBar bar("replaying", arguments.frames > 0 ? std::min(all, static_cast<std::size_t>(arguments.frames)) : all,
                   "pairs");
   options.progress = [&bar](std::uint64_t done, std::uint64_t) { bar.update(done); };
+  options.warn = [&bar](const Error& error) {
+    bar.clear();
+    std::fprintf(stderr, "pelorus: pair skipped: %s\n", error.message().c_str());
+  };
   Result<ReplaySummary> summary = run_replay(*source.value(), options);
   bar.clear();
   if (!summary) return summary.error();
@@ -84,7 +88,9 @@ Verb add_replay(CLI::App& app) {
   parser->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in OUT");
   parser->footer(
       "Exit codes: 0 done, 2 usage, 3 bad input, 4 calibration, 5 configuration, 6 output, 130 interrupted.\n"
-      "On an error midway everything processed before it is kept.");
+      "Up to three damaged pairs in a row are skipped and told of; the exit code is still 3. On an error that ends "
+      "the\n"
+      "run everything processed before it is kept.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
 

@@ -49,12 +49,14 @@ class PairFeed {
   [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
   [[nodiscard]] std::uint64_t pairs_read() const { return read_; }
   [[nodiscard]] bool stopped() const { return stopped_; }
+  [[nodiscard]] std::uint64_t unreadable() const { return unreadable_; }
+  [[nodiscard]] const std::optional<Error>& first_unreadable() const { return first_unreadable_; }
 
  private:
   Result<bool> read(SourcePair& pair) {
     if (options_.stop && options_.stop()) stopped_ = true;
     if (stopped_ || (options_.max_frames > 0 && read_ >= options_.max_frames)) return false;
-    Result<bool> more = source_.next(pair);
+    Result<bool> more = next_readable(pair);
     if (more.ok() && more.value()) {
       ++read_;
       if (has_last_) interval_ = pair.capture_time - last_time_;
@@ -62,6 +64,18 @@ class PairFeed {
       has_last_ = true;
     }
     return more;
+  }
+  // A damaged image costs its pair, told and counted; more of them in a row than the method bridges end the run.
+  Result<bool> next_readable(SourcePair& pair) {
+    constexpr int kBridgedPairs = 3;
+    for (int in_a_row = 0;; ++in_a_row) {
+      Result<bool> more = source_.next(pair);
+      if (more.ok()) return more;
+      if (!first_unreadable_) first_unreadable_ = more.error();
+      if (in_a_row == kBridgedPairs) return more;
+      ++unreadable_;
+      if (options_.warn) options_.warn(more.error());
+    }
   }
   Clock::time_point due(const SourcePair& pair) const { return start_clock_ + (pair.capture_time - start_time_); }
   // Its successor, one interval later, has been captured by now.
@@ -85,6 +99,8 @@ class PairFeed {
   Duration interval_{0};
   std::uint64_t read_ = 0;
   std::uint64_t dropped_ = 0;
+  std::uint64_t unreadable_ = 0;
+  std::optional<Error> first_unreadable_;
 };
 
 class SummaryCounter {
@@ -104,14 +120,16 @@ class SummaryCounter {
 
   [[nodiscard]] ReplaySummary finish(const PairFeed& feed, std::optional<Error> failure) {
     summary_.dropped = feed.dropped();
-    // A pair dropped by the feed leaves the same gap in seq as one missing from the recording.
+    // A pair dropped by the feed or unreadable leaves the same gap in seq as one missing from the recording.
     summary_.missing -= std::min(summary_.missing, summary_.dropped);
+    summary_.unreadable = feed.unreadable();
+    summary_.missing -= std::min(summary_.missing, summary_.unreadable);
     summary_.objects_confirmed = static_cast<int>(confirmed_.size());
     std::sort(step_us_.begin(), step_us_.end());
     summary_.median_step_ms = quantile_ms(0.5);
     summary_.p99_step_ms = quantile_ms(0.99);
     summary_.interrupted = feed.stopped();
-    summary_.failure = std::move(failure);
+    summary_.failure = failure ? std::move(failure) : feed.first_unreadable();
     return summary_;
   }
 
@@ -219,9 +237,9 @@ std::string to_text(const ReplaySummary& summary) {
     text += line.data();
   };
   using ull = unsigned long long;
-  add("frames   %llu stepped, %llu missing in the recording, %llu dropped, %llu without a pose\n",
-      static_cast<ull>(summary.frames), static_cast<ull>(summary.missing), static_cast<ull>(summary.dropped),
-      static_cast<ull>(summary.without_pose));
+  add("frames   %llu stepped, %llu missing in the recording, %llu unreadable, %llu dropped, %llu without a pose\n",
+      static_cast<ull>(summary.frames), static_cast<ull>(summary.missing), static_cast<ull>(summary.unreadable),
+      static_cast<ull>(summary.dropped), static_cast<ull>(summary.without_pose));
   text += "states  ";
   for (std::size_t i = 0; i < summary.states.size(); ++i) {
     if (summary.states[i] == 0) continue;

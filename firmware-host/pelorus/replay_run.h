@@ -19,16 +19,18 @@ namespace pelorus {
 
 struct ReplayOptions {
   PipelineConfig pipeline;
-  std::filesystem::path out_folder;  // made by prepare_output_folder
-  std::uint64_t max_frames = 0;      // pairs taken from the source; 0 = all
-  bool realtime = false;             // feed at the recorded times; the newest pair wins, the others are counted
-  int overlay_every = 0;             // annotated picture of every n-th frame; 0 = none
-  std::function<bool()> stop;        // asked before each pair; may be empty
+  std::filesystem::path out_folder;        // made by prepare_output_folder
+  std::uint64_t max_frames = 0;            // pairs taken from the source; 0 = all
+  bool realtime = false;                   // feed at the recorded times; the newest pair wins, the others are counted
+  int overlay_every = 0;                   // annotated picture of every n-th frame; 0 = none
+  std::function<void(const Error&)> warn;  // told of each pair that cannot be read and is bridged; may be empty
+  std::function<bool()> stop;              // asked before each pair; may be empty
   std::function<void(std::uint64_t done, std::uint64_t total)> progress;  // total 0 = unknown; may be empty
 };
 
 struct ReplaySummary {
   std::uint64_t frames = 0;               // steps made
+  std::uint64_t unreadable = 0;           // pairs with a damaged image
   std::uint64_t missing = 0;              // gaps in seq: pairs the recording lacks
   std::uint64_t dropped = 0;              // real-time mode: pairs skipped because the step was late
   std::uint64_t without_pose = 0;         // frames that camera.tum lacks
@@ -37,8 +39,9 @@ struct ReplaySummary {
   int objects_confirmed = 0;              // different ids that were ever confirmed
   double median_step_ms = 0;
   double p99_step_ms = 0;
-  bool interrupted = false;      // stop() said so
-  std::optional<Error> failure;  // why the run ended early; files hold everything before it
+  bool interrupted = false;  // stop() said so
+  // Why the run ended early, or else the first pair that could not be read; files hold everything that could.
+  std::optional<Error> failure;
 };
 
 // An Error here means that nothing could be started (calibration, output); later failures are in the summary.

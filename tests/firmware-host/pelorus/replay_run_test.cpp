@@ -30,7 +30,10 @@ class FakeSource : public StereoSource {
   std::size_t pair_count() const override { return pairs_; }
   Result<bool> next(SourcePair& pair) override {
     if (next_ == missing) ++next_;
-    if (next_ == failing) return Error{ErrorCode::bad_input, "frame 2", "truncated image", ""};
+    if (next_ >= failing && next_ - failing < failures) {
+      ++next_;
+      return Error{ErrorCode::bad_input, "frame " + std::to_string(next_ - 1), "truncated image", ""};
+    }
     if (next_ >= pairs_) return false;
     pair.seq = next_;
     pair.capture_time = Timestamp{static_cast<std::int64_t>(next_) * interval_ns};
@@ -42,6 +45,7 @@ class FakeSource : public StereoSource {
   std::string description() const override { return "fake"; }
 
   std::uint64_t failing = ~0ULL;
+  std::uint64_t failures = 1000;
   std::uint64_t missing = ~0ULL;
   std::int64_t interval_ns = 1000;
 
@@ -81,6 +85,35 @@ TEST(RunReplay, SourceErrorMidwayKeepsWhatWasProcessedAndIsReported) {
   ASSERT_TRUE(summary.value().failure.has_value());
   EXPECT_EQ(summary.value().failure->detail, "truncated image");
   EXPECT_EQ(frames_written(folder), 2);
+}
+
+TEST(RunReplay, FewDamagedPairsAreToldOfAndBridged) {
+  const TemporaryFolder folder;
+  FakeSource source(10);
+  source.failing = 4;
+  source.failures = 3;
+  ReplayOptions options = options_for(folder);
+  int warnings = 0;
+  options.warn = [&warnings](const Error&) { ++warnings; };
+  const Result<ReplaySummary> summary = run_replay(source, options);
+  ASSERT_TRUE(summary.ok());
+  EXPECT_EQ(summary.value().frames, 7U);
+  EXPECT_EQ(summary.value().unreadable, 3U);
+  EXPECT_EQ(summary.value().missing, 0U) << "not counted twice";
+  EXPECT_EQ(warnings, 3);
+  ASSERT_TRUE(summary.value().failure.has_value());
+  EXPECT_EQ(summary.value().failure->place, "frame 4") << "the first one names the cause";
+}
+
+TEST(RunReplay, FourDamagedPairsInARowEndTheRun) {
+  const TemporaryFolder folder;
+  FakeSource source(10);
+  source.failing = 4;
+  source.failures = 4;
+  const Result<ReplaySummary> summary = run_replay(source, options_for(folder));
+  ASSERT_TRUE(summary.ok());
+  EXPECT_TRUE(summary.value().failure.has_value());
+  EXPECT_EQ(frames_written(folder), 4);
 }
 
 TEST(RunReplay, StopRequestEndsTheRunWithValidFiles) {
