@@ -1,22 +1,9 @@
 #include "firmware-host/runtime/config_fields.h"
 
+#include "firmware-host/runtime/field_list.h"
+
 namespace pelorus {
 namespace {
-
-class FieldList {
- public:
-  void section(std::string_view name) { section_ = name; }
-  void add(std::string_view key, bool& value) { fields_.push_back({section_, key, &value, 0, 0}); }
-  template <class Number>
-  void add(std::string_view key, Number& value, double low, double high) {
-    fields_.push_back({section_, key, &value, low, high});
-  }
-  std::vector<ConfigField> take() { return std::move(fields_); }
-
- private:
-  std::string_view section_;
-  std::vector<ConfigField> fields_;
-};
 
 constexpr double kMaxChi2 = 1e4;  // gates: from closed to wide open
 

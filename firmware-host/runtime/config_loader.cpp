@@ -73,7 +73,9 @@ std::optional<Number> parse_number(const std::string& text) {
 
 class FileReader {
  public:
-  explicit FileReader(PipelineConfig& config) : fields_(config_fields(config)) {}
+  explicit FileReader(ServiceConfig& config) : fields_(service_fields(config)) {
+    for (ConfigField& field : config_fields(config.pipeline)) fields_.push_back(std::move(field));
+  }
 
   void read(const std::vector<YAML::Node>& documents) {
     if (documents.empty()) return;
@@ -146,6 +148,8 @@ class FileReader {
       } else {
         report(node, name + " is '" + text + "', not a switch", "write true or false");
       }
+    } else if (std::string* const* words = std::get_if<std::string*>(&field.value)) {
+      if (is_allowed_text(field, node, name, text)) **words = text;
     } else if (int* const* whole = std::get_if<int*>(&field.value)) {
       const std::optional<int> value = plain ? parse_number<int>(text) : std::nullopt;
       if (in_range(field, node, name, text, value, "a whole number")) **whole = *value;
@@ -153,6 +157,18 @@ class FileReader {
       const std::optional<double> value = plain ? parse_number<double>(text) : std::nullopt;
       if (in_range(field, node, name, text, value, "a number")) store(field, *value);
     }
+  }
+
+  bool is_allowed_text(const ConfigField& field, const YAML::Node& node, const std::string& name,
+                       const std::string& text) {
+    if (!node.IsScalar()) {
+      report(node, name + " is not a text", "write one text, in quotes when it holds ': ' or ' #'");
+      return false;
+    }
+    if (field.words.empty() || std::find(field.words.begin(), field.words.end(), text) != field.words.end())
+      return true;
+    report(node, name + " is '" + text + "'", suggestion(text, {field.words.begin(), field.words.end()}));
+    return false;
   }
 
   static void store(const ConfigField& field, double value) {
@@ -194,11 +210,11 @@ Error to_error(const std::filesystem::path& file, std::vector<Problem> problems)
 
 }  // namespace
 
-Result<Ok> apply_config_file(const std::filesystem::path& file, PipelineConfig& config) {
+Result<Ok> apply_config_file(const std::filesystem::path& file, ServiceConfig& config) {
   std::error_code ignored;
   const Error unreadable{ErrorCode::io, file.string(), "cannot read the configuration file", "check path and rights"};
   if (std::filesystem::is_directory(file, ignored)) return unreadable;  // yaml-cpp would read it as an empty file
-  PipelineConfig changed = config;
+  ServiceConfig changed = config;
   FileReader reader(changed);
   try {
     reader.read(YAML::LoadAllFromFile(file.string()));
@@ -209,10 +225,20 @@ Result<Ok> apply_config_file(const std::filesystem::path& file, PipelineConfig& 
   }
   std::vector<Problem> problems = reader.problems();
   if (problems.empty()) {
-    for (const std::string& rule : config_conflicts(changed)) problems.push_back({0, rule, "change one of the two"});
+    for (const std::string& rule : config_conflicts(changed.pipeline))
+      problems.push_back({0, rule, "change one of the two"});
+    for (const std::string& rule : service_conflicts(changed)) problems.push_back({0, rule, "see config/pelorus.yaml"});
   }
   if (!problems.empty()) return to_error(file, problems);
   config = changed;
+  return Ok{};
+}
+
+Result<Ok> apply_config_file(const std::filesystem::path& file, PipelineConfig& config) {
+  ServiceConfig service;
+  service.pipeline = config;
+  if (Result<Ok> applied = apply_config_file(file, service); !applied) return applied;
+  config = service.pipeline;
   return Ok{};
 }
 

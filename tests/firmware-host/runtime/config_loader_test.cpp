@@ -38,6 +38,9 @@ class ConfigFile : public ::testing::Test {
 };
 
 double value_of(const ConfigField& field) {
+  if (std::string* const* words = std::get_if<std::string*>(&field.value)) {
+    return static_cast<double>(std::hash<std::string>{}(**words) & 0xFFFFFU);  // only compared
+  }
   if (bool* const* flag = std::get_if<bool*>(&field.value)) return **flag ? 1 : 0;
   if (int* const* whole = std::get_if<int*>(&field.value)) return **whole;
   if (float* const* number = std::get_if<float*>(&field.value)) return static_cast<double>(**number);
@@ -47,6 +50,7 @@ double value_of(const ConfigField& field) {
 // Another legal value than the present one.
 void move_value(const ConfigField& field) {
   if (bool* const* flag = std::get_if<bool*>(&field.value)) **flag = !**flag;
+  if (std::string* const* words = std::get_if<std::string*>(&field.value)) **words += "other";
   const double other = value_of(field) == field.low ? field.high : field.low;
   if (int* const* whole = std::get_if<int*>(&field.value)) **whole = static_cast<int>(other);
   if (float* const* number = std::get_if<float*>(&field.value)) **number = static_cast<float>(other);
@@ -55,15 +59,21 @@ void move_value(const ConfigField& field) {
 
 std::string name_of(const ConfigField& field) { return std::string(field.section) + "." + std::string(field.key); }
 
+std::vector<ConfigField> all_fields(ServiceConfig& config) {
+  std::vector<ConfigField> fields = service_fields(config);
+  for (ConfigField& field : config_fields(config.pipeline)) fields.push_back(std::move(field));
+  return fields;
+}
+
 // Starting from settings that are all wrong, the file leads back to the defaults: it holds every key, rightly.
 TEST(ShippedConfig, RepeatsEveryDefault) {
-  PipelineConfig moved;
-  for (const ConfigField& field : config_fields(moved)) move_value(field);
+  ServiceConfig moved;
+  for (const ConfigField& field : all_fields(moved)) move_value(field);
   const Result<Ok> outcome = apply_config_file(PELORUS_SOURCE_DIR "/config/pelorus.yaml", moved);
   ASSERT_TRUE(outcome.ok()) << outcome.error().message();
-  PipelineConfig defaults;
-  const std::vector<ConfigField> expected = config_fields(defaults);
-  const std::vector<ConfigField> loaded = config_fields(moved);
+  ServiceConfig defaults;
+  const std::vector<ConfigField> expected = all_fields(defaults);
+  const std::vector<ConfigField> loaded = all_fields(moved);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     EXPECT_FLOAT_EQ(static_cast<float>(value_of(loaded[i])), static_cast<float>(value_of(expected[i])))
         << name_of(expected[i]) << ": config/pelorus.yaml and the default in the code differ";
@@ -75,7 +85,7 @@ TEST(ShippedConfig, EveryOtherFileIsAccepted) {
   for (const auto& entry : std::filesystem::directory_iterator(PELORUS_SOURCE_DIR "/config")) {
     const std::string name = entry.path().filename().string();
     if (entry.path().extension() != ".yaml" || name.starts_with("stereo")) continue;  // stereo*: calibrations
-    PipelineConfig config;
+    ServiceConfig config;
     const Result<Ok> outcome = apply_config_file(entry.path(), config);
     EXPECT_TRUE(outcome.ok()) << outcome.error().message();
     ++files;
@@ -84,14 +94,19 @@ TEST(ShippedConfig, EveryOtherFileIsAccepted) {
 }
 
 TEST(ConfigFields, HaveDistinctNamesAndDefaultsInRange) {
-  PipelineConfig defaults;
+  ServiceConfig defaults;
   std::set<std::string> names;
   std::set<const void*> places;
-  for (const ConfigField& field : config_fields(defaults)) {
+  for (const ConfigField& field : all_fields(defaults)) {
     EXPECT_TRUE(names.insert(name_of(field)).second) << name_of(field);
     const void* place = std::visit([](auto* value) -> const void* { return value; }, field.value);
     EXPECT_TRUE(places.insert(place).second) << name_of(field) << " fills a setting that another key fills";
     if (std::holds_alternative<bool*>(field.value)) continue;
+    if (std::string* const* words = std::get_if<std::string*>(&field.value)) {
+      const auto& allowed = field.words;
+      EXPECT_TRUE(allowed.empty() || std::count(allowed.begin(), allowed.end(), **words) == 1) << name_of(field);
+      continue;
+    }
     EXPECT_LT(field.low, field.high) << name_of(field);
     EXPECT_GE(value_of(field), field.low) << name_of(field);
     EXPECT_LE(value_of(field), field.high) << name_of(field);
@@ -143,6 +158,35 @@ TEST(ConfigFields, HoldEveryMemberOfEveryStruct) {
   for (const ConfigField& field : config_fields(defaults)) ++listed[field.section];
   EXPECT_EQ(listed, expected);
   EXPECT_EQ(member_count<PipelineConfig>(), expected.size() - 4) << "a stage without a section";
+}
+
+TEST(ServiceFields, HoldEveryMemberOfEveryStruct) {
+  const std::map<std::string_view, std::size_t> expected{
+      {"source", member_count<SourceConfig>()},
+      {"timing", member_count<TimingConfig>()},
+      {"capture", member_count<CaptureWatchConfig>()},
+      {"lcm", member_count<LcmConfig>()},
+  };
+  ServiceConfig defaults;
+  std::map<std::string_view, std::size_t> listed;
+  for (const ConfigField& field : service_fields(defaults)) ++listed[field.section];
+  EXPECT_EQ(listed, expected);
+  EXPECT_EQ(member_count<ServiceConfig>(), expected.size() + 1) << "a part without a section";
+}
+
+TEST_F(ConfigFile, TextsTakeTheListedWordsOnly) {
+  EXPECT_EQ(problems_of("source:\n  kind: synthetic\n  path: \"a: b\"\n"), "none");
+  const std::string message = problems_of("source:\n  kind: replays\n  path: [a]\n");
+  EXPECT_NE(message.find("did you mean 'replay'?"), std::string::npos) << message;
+  EXPECT_NE(message.find(line(3)), std::string::npos) << message;
+}
+
+TEST_F(ConfigFile, ServiceAndPipelineSettingsComeFromOneFile) {
+  std::ofstream(path_) << "source:\n  path: dive\nsteps:\n  net_filter: false\n";
+  ServiceConfig service;
+  ASSERT_TRUE(apply_config_file(path_, service).ok());
+  EXPECT_EQ(service.source.path, "dive");
+  EXPECT_FALSE(service.pipeline.steps.net_filter);
 }
 
 TEST_F(ConfigFile, ChangesOnlyWhatItLists) {

@@ -1,0 +1,29 @@
+#pragma once
+// All settings of the service: those of the pipeline and one struct for each part around it. Defaults live in the
+// structs; keys and ranges in service_fields.cpp; every key with its comment in config/pelorus.yaml. Pure data.
+
+#include <string>
+
+#include "core/pipeline/config.h"
+#include "services/service_settings.h"
+
+namespace pelorus {
+
+// Where stereo pairs come from.
+struct SourceConfig {
+  std::string kind = "replay";  // replay: a recorded data set; synthetic: a scene, rendered live
+  std::string path;             // data-set folder, or scene file
+  std::string calibration;      // file that replaces the source's own; empty = its own
+  double rate_hz = 0;           // pairs follow each other at this rate; 0 = at their recorded times
+  bool repeat = false;          // recorded pairs start anew at their end; else the service ends there
+};
+
+struct ServiceConfig {
+  SourceConfig source;
+  TimingConfig timing;
+  CaptureWatchConfig capture;
+  LcmConfig lcm;
+  PipelineConfig pipeline;
+};
+
+}  // namespace pelorus
