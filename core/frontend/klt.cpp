@@ -13,7 +13,6 @@ using namespace klt;
 
 constexpr float kCoarseEpsilonPx = 0.03F;  // a coarse level only has to bring the next one into its basin
 
-static const int E1 = std::getenv("E1") ? std::atoi(std::getenv("E1")) : 0;
 void keep(const LevelSearch& search, float scale, KltTask& task) {
   task.ncc = search.ncc;
   task.residual_rms = search.residual_rms;
