@@ -1,6 +1,7 @@
 #include "drivers/frame_ring.h"
 
 #include <gtest/gtest.h>
+#include <poll.h>
 
 #include <atomic>
 #include <chrono>
@@ -64,6 +65,19 @@ TEST(FrameRing, WakesAConsumerThatWaits) {
   EXPECT_TRUE(ring.wait(10s));
   EXPECT_EQ(ring.newest()->seq, 1U);
   EXPECT_FALSE(ring.wait(0ms));
+}
+
+TEST(FrameRing, ItsDescriptorIsReadableFromAFrameToTheClearing) {
+  FrameRing ring(3, kSmall);
+  const auto readable = [&] {
+    pollfd wake{ring.wake_fd(), POLLIN, 0};
+    return ::poll(&wake, 1, 0) == 1;
+  };
+  EXPECT_FALSE(readable());
+  ASSERT_TRUE(publish(ring, 1));
+  EXPECT_TRUE(readable());
+  ring.clear_wake();
+  EXPECT_FALSE(readable());
 }
 
 TEST(FrameRing, MovedLeasesGiveBackOnce) {

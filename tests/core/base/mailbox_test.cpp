@@ -26,6 +26,16 @@ TEST(Mailbox, TellsTheWriterWhatNobodyFetched) {
   EXPECT_FALSE(box.post(3));
 }
 
+TEST(Mailbox, TheFetchedValueStaysWhileTheWriterGoesOn) {
+  Mailbox<int> box;
+  box.post(1);
+  const int* held = box.fetch();
+  for (int i = 2; i < 9; ++i) {
+    box.post(i);
+    EXPECT_EQ(*held, 1);
+  }
+}
+
 // Every value seen is whole and newer than the one before; what was not seen was reported as replaced.
 TEST(Mailbox, NeverTearsAValueBetweenThreads) {
   using Block = std::array<long, 32>;
