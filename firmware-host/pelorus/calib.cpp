@@ -15,10 +15,10 @@
 #include "core/geometry/rectifier.h"
 #include "drivers/replay/dataset.h"
 #include "drivers/replay/image_file.h"
-#include "firmware-host/pelorus/overlay.h"
 #include "firmware-host/runtime/calibration.h"
 #include "firmware-host/runtime/calibration_writer.h"
 #include "firmware-host/runtime/row_check.h"
+#include "services/overlay.h"
 
 namespace pelorus {
 namespace {

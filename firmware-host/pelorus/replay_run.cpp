@@ -9,8 +9,8 @@
 
 #include "core/geometry/rectifier.h"
 #include "core/pipeline/pipeline.h"
-#include "firmware-host/pelorus/overlay.h"
 #include "firmware-host/pelorus/result_files.h"
+#include "services/overlay.h"
 
 namespace pelorus {
 namespace {

@@ -19,8 +19,9 @@ class Overlay {
  public:
   explicit Overlay(const StereoRig& rig) : rig_(rig) {}
 
-  // Advances the trails and speeds; every frame.
-  void observe(const FrameResult& result);
+  // Advances the trails and speeds; every frame, or with the time that the steps of the result span (`step`) when only
+  // some are observed.
+  void observe(const FrameResult& result, Duration step = {});
   // The picture of the frame observed last: BGR, the banner above the left image.
   [[nodiscard]] cv::Mat draw(const ImageView& left, const FrameResult& result, std::span<const PointView> points) const;
 

@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/overlay.h"
+#include "services/overlay.h"
 
 #include <algorithm>
 #include <array>
@@ -116,8 +116,9 @@ void draw_outline(cv::Mat& picture, const std::vector<cv::Point>& polygon, const
 
 }  // namespace
 
-void Overlay::observe(const FrameResult& result) {
-  const double dt_s = has_previous_ ? seconds(result.capture_time - previous_time_) : 0;
+void Overlay::observe(const FrameResult& result, Duration step) {
+  const Duration spanned = step.count() > 0 ? step : has_previous_ ? result.capture_time - previous_time_ : Duration{};
+  const double dt_s = seconds(spanned);
   for (const ObjectState& object : result.objects_view()) {
     if (object.phase == ObjectPhase::ended) {
       followed_.erase(object.id);

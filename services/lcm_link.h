@@ -1,0 +1,47 @@
+#pragma once
+// LcmLink: a connection to LCM that survives a network that is not there yet or goes away: opened when needed, and
+// again after failures, at most once a second. Thread-bound. Nothing of LCM's exceptions or prints is relied on; a
+// failure is a counter. (liblcm 1.3.1 cannot be opened without a multicast route, and publishing may fail at any time.)
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "core/base/counter.h"
+
+namespace lcm {
+class LCM;
+}
+
+namespace pelorus {
+
+class LcmLink {
+ public:
+  explicit LcmLink(std::string url);
+  ~LcmLink();
+
+  // The open connection, or nullptr for now.
+  [[nodiscard]] lcm::LCM* connection();
+  // Tells how the last use went; after a second of nothing but failures the connection is made anew.
+  void note(bool success);
+
+  [[nodiscard]] std::uint64_t errors() const { return errors_.value(); }
+  [[nodiscard]] std::uint64_t reconnects() const { return reconnects_.value(); }
+  [[nodiscard]] bool is_open() const { return open_.value() != 0; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string url_;
+  std::unique_ptr<lcm::LCM> lcm_;
+  Clock::time_point next_try_{};
+  Clock::time_point failing_since_{};
+  bool failing_ = false;
+  bool was_open_ = false;
+  Counter errors_;
+  Counter reconnects_;
+  Counter open_;
+};
+
+}  // namespace pelorus
