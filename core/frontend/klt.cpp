@@ -32,7 +32,7 @@ struct Descent {
   bool found = false;
 
   bool track(int level, Place start, KltTask& task) {
-    const float scale = std::ldexp(1.0F, -level);
+    const float scale = 1.0F / static_cast<float>(1 << level);
     LevelSearch search{from.level(level),
                        to.level(level),
                        {task.u_from_px * scale, task.v_from_px * scale},
@@ -40,7 +40,8 @@ struct Descent {
     search.coarser_agreed = found && start == place;
     const float epsilon = level == 0 ? config.epsilon_px : std::max(config.epsilon_px, kCoarseEpsilonPx);
     const KltOutcome outcome = track_level(config, warp, direction, epsilon, search);
-    const Place end{search.place.u_px / scale, search.place.v_px / scale};
+    const auto back = static_cast<float>(1 << level);
+    const Place end{search.place.u_px * back, search.place.v_px * back};
     if (outcome == KltOutcome::ok || !found) {
       task.level = level;
       task.outcome = outcome;
@@ -58,7 +59,7 @@ struct Descent {
   // A coarse answer may belong to another surface in its wide window: then the earlier ones get their chance.
   void descend(int level, KltTask& task) {
     const std::array<Place, 3> starts{hint, place, predicted};
-    const float near = std::ldexp(1.0F, level);  // a pixel of the level: the same basin
+    const auto near = static_cast<float>(1 << level);  // a pixel of the level: the same basin
     for (auto start = starts.begin(); start != starts.end(); ++start) {
       const bool tried = std::any_of(starts.begin(), start, [&](Place p) { return distance(p, *start) <= near; });
       if (!tried && track(level, *start, task)) return;

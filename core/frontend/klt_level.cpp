@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/kernels/patch_overlap.h"
 
@@ -16,23 +17,48 @@ constexpr float kConfirmedReachPx =
 // Most iterations of lost points are spent after this; few that are so far off by then still arrive.
 constexpr int kPatience = 4;
 constexpr float kHopelessNcc = 0.3F;
-constexpr float kMinCoverage = 0.5F;  // share of the window that both images must show
+constexpr float kDoubtfulNcc = 0.03F;  // below what would be accepted
+constexpr float kLeastRise = 0.002F;   // of the correlation per iteration, while it is doubtful
+constexpr float kMinCoverage = 0.5F;   // share of the window that both images must show
 
 float least_eigenvalue(float uu, float uv, float vv) {
   const float half_difference = 0.5F * (uu - vv);
   return 0.5F * (uu + vv) - std::sqrt(half_difference * half_difference + uv * uv);
 }
 
-// Gauss-Newton step of the offset, gain and translation model with offset and gain eliminated.
-Place newton_step(const PatchTemplate& patch, const PatchSums& sums, float gain, KltSearch search) {
-  const float eu = sums.gradient_u / gain;
-  const float ev = sums.gradient_v / gain;
-  if (search != KltSearch::plane) return {eu / patch.structure_uu, 0};
-  const float uu = patch.structure_uu;
-  const float uv = patch.structure_uv;
-  const float vv = patch.structure_vv;
-  const float scale = 1.0F / (uu * vv - uv * uv);
-  return {(vv * eu - uv * ev) * scale, (uu * ev - uv * eu) * scale};
+// Gauss-Newton step of the offset, gain and translation model with offset and gain eliminated: the inverse of the
+// structure, ready to be multiplied.
+struct Newton {
+  float uu = 0;
+  float uv = 0;
+  float vv = 0;
+
+  Newton(const PatchTemplate& patch, KltSearch search) {
+    if (search != KltSearch::plane) {
+      uu = 1.0F / patch.structure_uu;
+      return;
+    }
+    const float a = patch.structure_uu;
+    const float b = patch.structure_uv;
+    const float c = patch.structure_vv;
+    const float scale = 1.0F / (a * c - b * b);
+    uu = c * scale, uv = -b * scale, vv = a * scale;
+  }
+  // Gain as ratio of contrasts: equals the fitted gain at the solution and stays tame far from it.
+  [[nodiscard]] Place step(const PatchSums& sums, const PatchFit& fit) const {
+    return {(uu * sums.gradient_u + uv * sums.gradient_v) * fit.per_gain,
+            (uv * sums.gradient_u + vv * sums.gradient_v) * fit.per_gain};
+  }
+};
+
+float dot(Place a, Place b) { return a.u_px * b.u_px + a.v_px * b.v_px; }
+
+// Near the solution every step is the same small part of the one before: after two of them the rest is known (Aitken's
+// delta-squared). The rest as a multiple of the step, or infinity where the steps do not shrink like that.
+float rest_after(Place step, Place last) {
+  constexpr float kMostShrink = 0.5F;
+  const float shrink = dot(step, last) / dot(last, last);  // not finite without a step before
+  return std::abs(shrink) < kMostShrink ? shrink / (1 - shrink) : std::numeric_limits<float>::infinity();
 }
 
 bool has_texture(const PatchTemplate& patch, KltSearch search, float min_eigenvalue) {
@@ -42,30 +68,51 @@ bool has_texture(const PatchTemplate& patch, KltSearch search, float min_eigenva
   return eigenvalue >= min_eigenvalue * patch.count && patch.energy > kMinPatchContrast * patch.count;
 }
 
+// Where a search that will not be accepted ends: far from like, and not getting liker.
+bool hopeless(float ncc, float last_ncc, float min_ncc) {
+  return ncc < kHopelessNcc || (ncc < min_ncc - kDoubtfulNcc && ncc - last_ncc < kLeastRise);
+}
+
 KltOutcome iterate(const KltConfig& config, const PatchTemplate& patch, KltSearch direction, float epsilon_px,
                    LevelSearch& search) {
   const auto half = static_cast<float>(config.half_window_px);
-  const float reach = kMaxDriftPerHalfWindow * half;
+  const Newton newton(patch, direction);
   const Place start = search.place;
-  float last_step = kMaxStepPx;
+  const float reach = kMaxDriftPerHalfWindow * half;
+  Place last{};
   PatchFit fit;
-  for (int i = 0; i < config.max_iterations && last_step > epsilon_px; ++i) {
+  bool settled = false;
+  for (int i = 0; i < config.max_iterations && !settled; ++i) {
+    const float last_ncc = fit.ncc;
     const PatchSums sums = compare_patch(search.to, search.place.u_px - half, search.place.v_px - half, patch);
     fit = fit_of(patch, sums);
     if (fit.spread <= 0) return KltOutcome::low_correlation;
     if (i == 0) search.start_ncc = fit.ncc;
-    if (i >= kPatience && fit.ncc < kHopelessNcc) return KltOutcome::low_correlation;
-    // Gain as ratio of contrasts: equals the fitted gain at the solution and stays tame far from it.
-    Place step = newton_step(patch, sums, std::sqrt(fit.spread / patch.energy), direction);
-    last_step = distance(step, {});
-    const float scale = last_step > kMaxStepPx ? kMaxStepPx / last_step : 1.0F;
+    if (i >= kPatience && hopeless(fit.ncc, last_ncc, search.coarser_agreed ? config.confirmed_ncc : config.min_ncc)) {
+      judge(patch, fit, search);
+      return KltOutcome::low_correlation;
+    }
+    const Place step = newton.step(sums, fit);
+    const float length2 = dot(step, step);
+    const float rest = rest_after(step, last);
+    float scale = 1;
+    if (length2 <= epsilon_px * epsilon_px) {
+      settled = true;
+    } else if (rest * rest * length2 <= epsilon_px * epsilon_px) {
+      settled = true;
+      scale += rest;
+    } else if (length2 > kMaxStepPx * kMaxStepPx) {
+      scale = kMaxStepPx / std::sqrt(length2);
+    }
+    if (i + 1 == config.max_iterations) settled = settled || length2 <= kSettledPx * kSettledPx;
     search.place.u_px -= scale * step.u_px;
     search.place.v_px -= scale * step.v_px;
+    last = scale < 1 ? Place{} : step;
     if (!inside(search.to, search.place)) return KltOutcome::out_of_image;
     if (distance(search.place, start) > reach) return KltOutcome::diverged;
   }
   judge(patch, fit, search);
-  if (!(last_step <= std::max(epsilon_px, kSettledPx))) return KltOutcome::diverged;
+  if (!settled) return KltOutcome::diverged;
   const bool confirmed = search.coarser_agreed && distance(search.place, start) <= kConfirmedReachPx;
   const float min_ncc = confirmed ? config.confirmed_ncc : config.min_ncc;
   return fit.ncc >= min_ncc ? KltOutcome::ok : KltOutcome::low_correlation;
@@ -95,10 +142,10 @@ void sample_template(const LevelSearch& search, const TaskWarp& warp, PatchTempl
   if (warp.identity) {
     columns = columns & overlap(first.u_px, patch.size, search.from.width);
     rows = rows & overlap(first.v_px, patch.size, search.from.height);
-    set_weights(patch, columns, rows);
+    set_mask(patch, columns, rows);
     sample_patch(search.from, first.u_px, first.v_px, patch);
   } else {
-    set_weights(patch, columns, rows);
+    set_mask(patch, columns, rows);
     sample_warped_patch(search.from, search.start_from.u_px, search.start_from.v_px, warp.A_from_to, patch);
   }
   normalise(patch);

@@ -66,13 +66,13 @@ bool improve(const KltConfig& config, float epsilon_px, Trial& trial) {
   const SlantSums sums = compare_slanted_patch(trial.search.to, at.u_px - half, at.v_px - half, patch, slant);
   const PatchFit fit = fit_of(patch, sums.plain);
   if (fit.spread <= 0) return false;
-  const float gain = std::sqrt(fit.spread / patch.energy);
   const float prior = kNoiseVariance / (kSlopeSigma * kSlopeSigma);
   std::array<float, 6> H = slant.structure;
   H[3] += prior;
   H[5] += prior;
-  const SlantStep step = solve(H, {sums.plain.gradient_u / gain, sums.slope_x / gain - prior * trial.slope_x,
-                                   sums.slope_y / gain - prior * trial.slope_y});
+  const SlantStep step =
+      solve(H, {sums.plain.gradient_u * fit.per_gain, sums.slope_x * fit.per_gain - prior * trial.slope_x,
+                sums.slope_y * fit.per_gain - prior * trial.slope_y});
   const float sx = std::clamp(step.slope_x, -kMaxSlopeStep, kMaxSlopeStep);
   const float sy = std::clamp(step.slope_y, -kMaxSlopeStep, kMaxSlopeStep);
   judge(patch, fit, trial.search);

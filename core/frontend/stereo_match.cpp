@@ -94,7 +94,7 @@ StereoMatcher::Found StereoMatcher::search_row(const ImagePyramid& from, const I
   PatchTemplate patch;
   patch.size = 2 * config_.search_half_window_px + 1;
   const auto half = static_cast<float>(config_.search_half_window_px);
-  set_weights(patch, overlap(u - half, patch.size, image.width), overlap(v - half, patch.size, image.height));
+  set_mask(patch, overlap(u - half, patch.size, image.width), overlap(v - half, patch.size, image.height));
   sample_patch(image, u - half, v - half, patch);
   normalise(patch);
   const float min_eigenvalue = klt_.config().min_eigenvalue;

@@ -3,6 +3,7 @@
 // (Unser 1999). Taps sum to 1, derivatives to 0. Pure.
 
 #include <array>
+#include <cstdint>
 
 namespace pelorus {
 
@@ -16,6 +17,16 @@ inline std::array<float, 4> cubic_spline(float t) {
 inline std::array<float, 4> cubic_spline_derivative(float t) {
   const float s = 1.0F - t;
   return {-0.5F * s * s, t * (1.5F * t - 2.0F), s * (2.0F - 1.5F * s), 0.5F * t * t};
+}
+
+// As 16-bit fractions of 2^15, rounded to nearest; no tap reaches 1.
+inline std::array<std::int16_t, 4> fixed_taps(const std::array<float, 4>& taps) {
+  std::array<std::int16_t, 4> fixed{};
+  for (std::size_t i = 0; i < 4; ++i) {
+    // Shifted to positive numbers, for which truncation rounds down.
+    fixed[i] = static_cast<std::int16_t>(static_cast<int>(taps[i] * 32768.0F + 65536.5F) - 65536);
+  }
+  return fixed;
 }
 
 }  // namespace pelorus

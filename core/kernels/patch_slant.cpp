@@ -1,9 +1,9 @@
 // The part of patch.h for slanted surfaces.
-#include <algorithm>
 #include <cmath>
 
 #include "core/kernels/cubic_spline.h"
 #include "core/kernels/patch.h"
+#include "core/kernels/patch_totals.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/kernels/patch_slant.cpp"
@@ -15,47 +15,42 @@
 HWY_BEFORE_NAMESPACE();
 namespace pelorus::HWY_NAMESPACE {
 
+// Gradient times offset, from kPatchUnits to PatchSlant::kUnits. The product itself may leave 16 bits: the offset
+// enters as a fraction of 2^15 that brings the change of units with it.
+HWY_INLINE Vec slope(Vec gradient, Vec offset) {
+  static_assert(kPatchUnits / PatchSlant::kUnits == 8);
+  return hn::MulFixedPoint15(gradient, hn::ShiftLeft<12>(offset));
+}
+
 void prepare_slant(const PatchTemplate& patch, PatchSlant& slant) {
   const Columns d;
   const std::size_t end = static_cast<std::size_t>(patch.size) * kPatchStride;
-  const float center = 0.5F * static_cast<float>(patch.size - 1);
-  const float* f = patch.value.data();
-  const float* g = patch.gradient_u.data();
-  const float* w = patch.weight.data();
-  float* sx = slant.slope_x.data();
-  float* sy = slant.slope_y.data();
-  ColumnSums<5> sums;
+  const int center = (patch.size - 1) / 2;
+  SlantTotals totals;
   for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
-    const Vec x = hn::Sub(hn::Iota(d, static_cast<float>(c)), hn::Set(d, center));
-    Vec mean_x = hn::Zero(d), mean_y = mean_x, along_x = mean_x, along_y = mean_x;
-    float row = -center;
-    for (std::size_t i = c; i < end; i += kPatchStride, row += 1.0F) {
-      const Vec gradient = hn::LoadU(d, g + i), weight = hn::LoadU(d, w + i), value = hn::LoadU(d, f + i);
-      const Vec per_x = hn::Mul(gradient, x), per_y = hn::Mul(gradient, hn::Set(d, row));
-      hn::StoreU(per_x, d, sx + i), hn::StoreU(per_y, d, sy + i);
-      mean_x = add_product(mean_x, weight, per_x), mean_y = add_product(mean_y, weight, per_y);
-      along_x = add_product(along_x, value, per_x), along_y = add_product(along_y, value, per_y);
-    }
-    sums.put(0, c, mean_x), sums.put(1, c, mean_y), sums.put(2, c, along_x), sums.put(3, c, along_y);
-  }
-  const float per_pixel = 1.0F / std::max(patch.count, 1.0F);
-  const float scale = 1.0F / std::max(patch.energy, 1e-6F);
-  const Vec mean_x = hn::Set(d, sums.collect(0) * per_pixel), mean_y = hn::Set(d, sums.collect(1) * per_pixel);
-  const Vec along_x = hn::Set(d, sums.collect(2) * scale), along_y = hn::Set(d, sums.collect(3) * scale);
-  for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
-    Vec ux = hn::Zero(d), uy = ux, xx = ux, xy = ux, yy = ux;
+    const Vec column = hn::Iota(d, static_cast<std::int16_t>(static_cast<int>(c) - center));
+    // The last column is never in use, and its offset may not fit the fraction.
+    const Vec offset_x = hn::Min(column, hn::Set(d, static_cast<std::int16_t>(center)));
+    Vec offset_y = hn::Set(d, static_cast<std::int16_t>(-center));
+    ProductSum x, y, fx, fy, ux, uy, xx, xy, yy;
     for (std::size_t i = c; i < end; i += kPatchStride) {
-      const Vec gradient = hn::LoadU(d, g + i), weight = hn::LoadU(d, w + i), value = hn::LoadU(d, f + i);
-      const Vec x = hn::Sub(hn::Mul(weight, hn::Sub(hn::LoadU(d, sx + i), mean_x)), hn::Mul(along_x, value));
-      const Vec y = hn::Sub(hn::Mul(weight, hn::Sub(hn::LoadU(d, sy + i), mean_y)), hn::Mul(along_y, value));
-      hn::StoreU(x, d, sx + i), hn::StoreU(y, d, sy + i);
-      ux = add_product(ux, gradient, x), uy = add_product(uy, gradient, y);
-      xx = add_product(xx, x, x), xy = add_product(xy, x, y), yy = add_product(yy, y, y);
+      const Vec gradient = load_row(patch.gradient_u, i), value = load_row(patch.value, i);
+      const Vec per_x = slope(gradient, offset_x);
+      const Vec per_y = slope(gradient, offset_y);
+      hn::StoreU(per_x, d, slant.slope_x.data() + i);
+      hn::StoreU(per_y, d, slant.slope_y.data() + i);
+      x.add(per_x), y.add(per_y);
+      fx.add(value, per_x), fy.add(value, per_y);
+      ux.add(gradient, per_x), uy.add(gradient, per_y);
+      xx.add(per_x, per_x), xy.add(per_x, per_y), yy.add(per_y, per_y);
+      offset_y = hn::Add(offset_y, hn::Set(d, std::int16_t{1}));
     }
-    sums.put(0, c, ux), sums.put(1, c, uy), sums.put(2, c, xx), sums.put(3, c, xy), sums.put(4, c, yy);
+    totals.x += x.total(), totals.y += y.total();
+    totals.value_x += fx.total(), totals.value_y += fy.total();
+    totals.u_x += ux.total(), totals.u_y += uy.total();
+    totals.x_x += xx.total(), totals.x_y += xy.total(), totals.y_y += yy.total();
   }
-  slant.structure = {patch.structure_uu, sums.collect(0), sums.collect(1),
-                     sums.collect(2),    sums.collect(3), sums.collect(4)};
+  finish(totals, patch, slant);
 }
 
 SlantSums compare_slanted_patch(const ImageView& image, float u, float v, const PatchTemplate& patch,
@@ -63,36 +58,33 @@ SlantSums compare_slanted_patch(const ImageView& image, float u, float v, const 
   const Columns d;
   const float floor_u = std::floor(u);
   const float floor_v = std::floor(v);
-  const TapVectors wu = broadcast(cubic_spline(u - floor_u));
-  const TapVectors wv = broadcast(cubic_spline(v - floor_v));
-  const Vec mean = hn::Set(d, patch.mean);
-  ColumnSums<7> sums;
+  const TapVectors wu = broadcast(fixed_taps(cubic_spline(u - floor_u)));
+  const TapVectors wv = broadcast(fixed_taps(cubic_spline(v - floor_v)));
+  const Vec mean = hn::Set(d, static_cast<std::int16_t>(patch.mean));
+  SlantComparisonTotals totals;
   for (std::size_t c = 0; c < kPatchStride; c += hn::Lanes(d)) {
     const std::uint8_t* p = image.row(static_cast<int>(floor_v) - 1) + static_cast<int>(floor_u) - 1 + c;
-    Vec s0 = hn::Zero(d), s1 = s0, s2 = s0;
-    Vec gradient_u = s0, gradient_v = s0, value = s0, sum = s0, square = s0, slope_x = s0, slope_y = s0;
-    for (int r = -3; r < patch.size; ++r, p += image.stride) {
-      const Vec s3 = dot(wu, load_pixels(p), load_pixels(p + 1), load_pixels(p + 2), load_pixels(p + 3));
-      if (r >= 0) {
-        const std::size_t i = static_cast<std::size_t>(r) * kPatchStride + c;
-        const Vec weight = hn::LoadU(d, patch.weight.data() + i);
-        const Vec relative = hn::Mul(weight, hn::Sub(dot(wv, s0, s1, s2, s3), mean));
-        gradient_u = add_product(gradient_u, hn::LoadU(d, patch.gradient_u.data() + i), relative);
-        gradient_v = add_product(gradient_v, hn::LoadU(d, patch.gradient_v.data() + i), relative);
-        value = add_product(value, hn::LoadU(d, patch.value.data() + i), relative);
-        sum = hn::Add(sum, relative);
-        square = add_product(square, relative, relative);
-        slope_x = add_product(slope_x, hn::LoadU(d, slant.slope_x.data() + i), relative);
-        slope_y = add_product(slope_y, hn::LoadU(d, slant.slope_y.data() + i), relative);
-      }
+    Vec s0 = filter_row(wu, p), s1 = filter_row(wu, p + image.stride), s2 = filter_row(wu, p + 2 * image.stride);
+    p += 3 * image.stride;
+    ProductSum gradient_u, gradient_v, value, sum, square, slope_x, slope_y;
+    const std::size_t end = static_cast<std::size_t>(patch.size) * kPatchStride;
+    for (std::size_t i = c; i < end; i += kPatchStride, p += image.stride) {
+      const Vec s3 = filter_row(wu, p);
+      const Vec relative = hn::And(load_row(patch.mask, i), hn::Sub(to_units(dot(wv, s0, s1, s2, s3)), mean));
+      gradient_u.add(load_row(patch.gradient_u, i), relative);
+      gradient_v.add(load_row(patch.gradient_v, i), relative);
+      value.add(load_row(patch.value, i), relative);
+      sum.add(relative), square.add(relative, relative);
+      slope_x.add(load_row(slant.slope_x, i), relative);
+      slope_y.add(load_row(slant.slope_y, i), relative);
       s0 = s1, s1 = s2, s2 = s3;
     }
-    sums.put(0, c, gradient_u), sums.put(1, c, gradient_v), sums.put(2, c, value), sums.put(3, c, sum);
-    sums.put(4, c, square), sums.put(5, c, slope_x), sums.put(6, c, slope_y);
+    ComparisonTotals& plain = totals.plain;
+    plain.u += gradient_u.total(), plain.v += gradient_v.total(), plain.value += value.total();
+    plain.sum += sum.total(), plain.square += square.total();
+    totals.x += slope_x.total(), totals.y += slope_y.total();
   }
-  return {{sums.collect(0), sums.collect(1), sums.collect(2), sums.collect(3), sums.collect(4)},
-          sums.collect(5),
-          sums.collect(6)};
+  return finish(totals, patch, slant);
 }
 
 }  // namespace pelorus::HWY_NAMESPACE
