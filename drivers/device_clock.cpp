@@ -7,8 +7,9 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kSecond = 1'000'000'000;
-constexpr std::int64_t kSpan = 5 * kSecond;          // a drift of 50 ppm moves the offset by 0.25 ms in it
-constexpr std::int64_t kEarly = 20 * kMs;            // no frame arrives before it was taken
+constexpr std::int64_t kSpan = 5 * kSecond;  // a drift of 50 ppm moves the offset by 0.25 ms in it
+constexpr std::int64_t kEarly = 20 * kMs;    // no frame arrives before it was taken
+constexpr std::int64_t kEarlyAtFirst = 250 * kMs;
 constexpr std::int64_t kLate = 100 * kMs;            // a busy or stopped host makes frames late for a while ...
 constexpr std::int64_t kLateFor = kSecond;           // ... not for this long
 constexpr std::int64_t kTooLate = 5 * kSecond;       // no buffer holds a frame this long
@@ -34,8 +35,10 @@ DeviceClock::Mapped DeviceClock::map(std::int64_t device_ns, Timestamp arrival) 
 
 bool DeviceClock::jumped(std::int64_t device_ns, Timestamp arrival) {
   const std::int64_t late_ns = arrival.ns - device_ns - offset_ns_;
+  // The first frame may have been late itself.
+  const std::int64_t early_limit = arrival.ns - first_arrival_.ns < kSecond ? kEarlyAtFirst : kEarly;
   if (late_ns < kLate) last_in_time_ = arrival;
-  return device_ns <= last_device_ns_ || late_ns < -kEarly || late_ns > kTooLate ||
+  return device_ns <= last_device_ns_ || late_ns < -early_limit || late_ns > kTooLate ||
          arrival.ns - last_in_time_.ns > kLateFor;
 }
 

@@ -116,8 +116,8 @@ TEST(PixelFormat, BayerKeepsALinearScene) {
 
 TEST(PixelFormat, BitsAboveTheDepthDoNotWrap) {
   Buffer b = make(PixelFormat::gray10, 2);
-  *at(b, 0, 0) = 0xFF;
-  *at(b, 0, 1) = 0xFF;
+  *at(b, 0, 0) = 0x00;
+  *at(b, 0, 1) = 0x04;
   Image out;
   ASSERT_TRUE(to_gray(b.picture, 0, kWidth, out));
   EXPECT_EQ(out.row(0)[0], 255);
