@@ -17,6 +17,15 @@ enum class TimeSource : std::uint8_t {
   arrival,   // no better stamp: when the program received it
 };
 
+// Which moment of the exposure a device stamps.
+enum class StampAt : std::uint8_t { exposure_start, mid_exposure, exposure_end };
+
+[[nodiscard]] constexpr Timestamp mid_exposure(Timestamp stamp, StampAt at, Duration exposure) {
+  if (at == StampAt::exposure_start) return stamp + exposure / 2;
+  if (at == StampAt::exposure_end) return stamp + -exposure / 2;
+  return stamp;
+}
+
 struct FrameFormat {
   int width = 0;
   int height = 0;

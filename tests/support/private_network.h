@@ -1,0 +1,47 @@
+#pragma once
+// A network of this process alone: loopback with further addresses. Tests that use fixed ports then disturb nobody,
+// and packet sockets work without rights on the machine. Call it before any thread is started.
+
+#include <arpa/inet.h>
+#include <net/if.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstring>
+#include <initializer_list>
+
+namespace pelorus::test {
+
+inline bool set_address(int fd, const char* interface, const char* address) {
+  ifreq request{};
+  std::snprintf(request.ifr_name, sizeof request.ifr_name, "%s", interface);
+  sockaddr_in in{};
+  in.sin_family = AF_INET;
+  if (inet_pton(AF_INET, address, &in.sin_addr) != 1) return false;
+  std::memcpy(&request.ifr_addr, &in, sizeof in);
+  return ioctl(fd, SIOCSIFADDR, &request) == 0;
+}
+
+// False when the kernel does not let us; nothing is changed then.
+inline bool enter_private_network(std::initializer_list<const char*> more_addresses) {
+  if (unshare(geteuid() == 0 ? CLONE_NEWNET : CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
+  const int fd = socket(AF_INET, SOCK_DGRAM, 0);
+  ifreq loopback{};
+  std::snprintf(loopback.ifr_name, sizeof loopback.ifr_name, "lo");
+  bool good = ioctl(fd, SIOCGIFFLAGS, &loopback) == 0;
+  loopback.ifr_flags = static_cast<short>(loopback.ifr_flags | IFF_UP | IFF_RUNNING);
+  good = good && ioctl(fd, SIOCSIFFLAGS, &loopback) == 0 && set_address(fd, "lo", "127.0.0.1");
+  int alias = 0;
+  for (const char* address : more_addresses) {
+    char name[IFNAMSIZ];
+    std::snprintf(name, sizeof name, "lo:%d", ++alias);
+    good = good && set_address(fd, name, address);
+  }
+  close(fd);
+  return good;
+}
+
+}  // namespace pelorus::test
