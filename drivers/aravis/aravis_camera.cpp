@@ -4,15 +4,17 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
+#include <thread>
 
 #include "drivers/aravis/aravis_settings.h"
+#include "drivers/aravis/gvcp_probe.h"
 #include "drivers/pixel_format.h"
 
 namespace pelorus {
 namespace {
 
-// A camera silent for so long is not asked to stop: when it is gone, every question costs 2.5 s.
-constexpr Duration kGivenUp = std::chrono::seconds(1);
+// A camera silent for so long is asked by ourselves whether it is still there.
+constexpr Duration kSuspicious = std::chrono::milliseconds(500);
 constexpr std::int64_t kLongestWaitNs = 5'000'000'000;
 
 PixelFormat pixel_format(ArvPixelFormat format) {
@@ -71,12 +73,20 @@ struct AravisCamera::Session {
   gulong signal = 0;
   CameraStatistics before;  // transport counters of the connections before this one
 
+  [[nodiscard]] bool answers() const;
   static void on_control_lost(ArvDevice*, gpointer session) { static_cast<Session*>(session)->control_lost = true; }
   ~Session() {
     stream.reset();
     if (camera && signal != 0) g_signal_handler_disconnect(arv_camera_get_device(camera.get()), signal);
   }
 };
+
+bool AravisCamera::Session::answers() const {
+  GSocketAddress* address = arv_gv_device_get_device_address(ARV_GV_DEVICE(arv_camera_get_device(camera.get())));
+  sockaddr_in native{};
+  if (address == nullptr || g_socket_address_to_native(address, &native, sizeof native, nullptr) == 0) return true;
+  return answers_gvcp(native);
+}
 
 AravisCamera::AravisCamera(const AravisConfig& config, const CaptureClock& clock)
     : config_(config), clock_(clock), device_clock_(config.clock) {}
@@ -90,11 +100,14 @@ Error AravisCamera::problem(const std::string& what, const std::string& cure) co
 Result<> AravisCamera::open() {
   stop();
   GFailure failure;
+  const char* cure = "check power, cable and address; `pelorus doctor` lists the cameras that answer";
+  if (const auto address = gvcp_address(config_.device); address && !answers_gvcp(*address)) {
+    return problem("does not answer", cure);
+  }
   auto session = std::make_unique<Session>();
   session->camera.reset(arv_camera_new(config_.device.c_str(), failure.slot()));
   if (!session->camera) {
-    return problem("cannot be opened: " + failure.message(),
-                   "check power, cable and address; `pelorus doctor` lists the cameras that answer");
+    return problem("cannot be opened: " + failure.message(), cure);
   }
   ArvCamera* camera = session->camera.get();
   if (arv_camera_is_gv_device(camera) == 0) return problem("is no GigE Vision camera", "use the v4l2 driver");
@@ -227,10 +240,14 @@ void AravisCamera::count_transport() {
 
 void AravisCamera::stop() {
   if (!session_) return;
-  const bool silent = clock_.now() - last_arrival_ > kGivenUp;
-  if (session_->stream && !session_->control_lost && !silent) {
-    arv_camera_stop_acquisition(session_->camera.get(), nullptr);
+  const bool suspicious = session_->control_lost || clock_.now() - last_arrival_ > kSuspicious;
+  if (suspicious && !session_->answers()) {
+    // Aravis takes up to 10 s to let go of a camera that is gone (its retries cannot be set in 0.8). The session owns
+    // all that the thread touches, and neither a camera that comes back nor the end of the program waits for it.
+    std::thread([gone = std::move(session_)]() mutable { gone.reset(); }).detach();
+    return;
   }
+  if (session_->stream && !session_->control_lost) arv_camera_stop_acquisition(session_->camera.get(), nullptr);
   session_.reset();
 }
 

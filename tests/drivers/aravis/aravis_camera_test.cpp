@@ -183,11 +183,12 @@ TEST_F(AravisCameraTest, ComesBackAfterTheCameraWasOff) {
   ASSERT_TRUE(receive(camera, frame));
   const std::uint64_t last_seq = frame.seq;
   device_.reset();
-  EXPECT_FALSE(receive(camera, frame, 1500ms));
+  while (camera.next(frame, 1200ms) == FrameOutcome::frame) {
+  }
   const auto before = std::chrono::steady_clock::now();
   camera.stop();
   EXPECT_FALSE(camera.open().ok());
-  RecordProperty("stop_and_failed_open_ms", static_cast<int>((std::chrono::steady_clock::now() - before) / 1ms));
+  EXPECT_LT(std::chrono::steady_clock::now() - before, 2s);  // Aravis alone would take 12 s
   switch_on();
   open(camera);
   ASSERT_TRUE(receive(camera, frame));
