@@ -5,6 +5,7 @@
 
 #include "core/kernels/cubic_spline.h"
 #include "core/kernels/patch.h"
+#include "core/kernels/patch_shear.h"
 #include "core/kernels/patch_totals.h"
 
 namespace pelorus::reference {
@@ -104,6 +105,12 @@ void sample_patch(const ImageView& image, float u, float v, PatchTemplate& patch
 
 void sample_warped_patch(const ImageView& image, float u, float v, const std::array<float, 4>& A,
                          PatchTemplate& patch) {
+  shear::Plan plan;
+  if (shear::make_plan(image, u, v, A, patch.size, plan)) return reference::sample_sheared(image, plan, patch);
+  reference::sample_each_pixel(image, u, v, A, patch);
+}
+
+void sample_each_pixel(const ImageView& image, float u, float v, const std::array<float, 4>& A, PatchTemplate& patch) {
   const float center = 0.5F * static_cast<float>(patch.size - 1);
   const auto last_u = static_cast<float>(image.width - 1);
   const auto last_v = static_cast<float>(image.height - 1);

@@ -1,9 +1,11 @@
-// The part of patch.h that samples through a warp. Positions and taps differ from pixel to pixel: floating point, in
-// the reference's order of operations, rounded to units at the end.
+// The part of patch.h that samples through a warp: in two passes where the warp is near the identity (patch_shear.h),
+// else pixel by pixel. There positions and taps differ from pixel to pixel: floating point, in the reference's order of
+// operations, rounded to units at the end.
 #include <cstddef>
 #include <cstring>
 
 #include "core/kernels/patch.h"
+#include "core/kernels/patch_shear.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/kernels/patch_warp.cpp"
@@ -81,8 +83,7 @@ HWY_INLINE void store_units(FloatVec v, std::int16_t* out) {
   hn::StoreU(hn::DemoteTo(Shorts(), whole), Shorts(), out);
 }
 
-void sample_warped_patch(const ImageView& image, float u, float v, const std::array<float, 4>& A,
-                         PatchTemplate& patch) {
+void sample_each_pixel(const ImageView& image, float u, float v, const std::array<float, 4>& A, PatchTemplate& patch) {
   const Floats d;
   const hn::RebindToSigned<Floats> di;
   const float center = 0.5F * static_cast<float>(patch.size - 1);
@@ -133,11 +134,13 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace pelorus {
 
-HWY_EXPORT(sample_warped_patch);
+HWY_EXPORT(sample_each_pixel);
 
 void sample_warped_patch(const ImageView& image, float u, float v, const std::array<float, 4>& A,
                          PatchTemplate& patch) {
-  HWY_DYNAMIC_DISPATCH(sample_warped_patch)(image, u, v, A, patch);
+  shear::Plan plan;
+  if (shear::make_plan(image, u, v, A, patch.size, plan)) return sample_sheared(image, plan, patch);
+  HWY_DYNAMIC_DISPATCH(sample_each_pixel)(image, u, v, A, patch);
 }
 
 }  // namespace pelorus
