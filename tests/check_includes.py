@@ -25,6 +25,8 @@ SOURCE_NAME = re.compile(r"\.(h|hpp|c|cc|cpp)$")
 INCLUDE = re.compile(r'^\s*#\s*include\s*(["<])([^">]+)[">]')
 # Highway asks for its own headers in quotes (foreach_target.h includes the including file once per target).
 QUOTED_THIRD_PARTY = ("hwy/",)
+# Firmware copies these files out of the tree, so they include each other by bare name.
+STAND_ALONE = "firmware-host/autopilot"
 FORBIDDEN_IN_CORE = [
     (re.compile(r"#\s*include\s*<opencv"), "OpenCV in core: wrap it in drivers or firmware-host"),
     (re.compile(r"#\s*include\s*<(iostream|fstream|filesystem)>"), "core opens no file and prints nothing"),
@@ -71,6 +73,8 @@ def check_include(root, path, line):
         in_tree = included.split("/")[0] in SOURCE_FOLDERS and "/" in included
         return f'own headers are included in quotes: "{included}"' if in_tree else None
     if included.startswith(QUOTED_THIRD_PARTY):
+        return None
+    if folder_of(path) == STAND_ALONE and os.path.isfile(os.path.join(root, os.path.dirname(path), included)):
         return None
     if not os.path.isfile(os.path.join(root, included)):
         return f'"{included}" is no file of this tree (write includes from the root, third-party ones in <>)'

@@ -56,6 +56,12 @@ class StructureRules(unittest.TestCase):
     def test_services_include_no_program(self):
         self.assert_refused("services/a.cpp", '#include "firmware-host/pelorus/verb.h"\n', "services may not include")
 
+    def test_the_autopilot_receiver_includes_its_neighbors_by_name(self):
+        self.assertEqual(self.found("firmware-host/autopilot/a.c", '#include "pelorus_can.h"\n'), [])
+
+    def test_nobody_else_includes_neighbors_by_name(self):
+        self.assert_refused("firmware-host/pelorus/a.cpp", '#include "verb.h"\n', "no file of this tree")
+
     def test_the_autopilot_receiver_stands_alone(self):
         self.assert_refused("firmware-host/autopilot/a.c", '#include "core/base/result.h"\n', "may not include")
 

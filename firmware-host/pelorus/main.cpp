@@ -7,6 +7,7 @@
 
 #include "firmware-host/pelorus/ablate.h"
 #include "firmware-host/pelorus/calib.h"
+#include "firmware-host/pelorus/can.h"
 #include "firmware-host/pelorus/command.h"
 #include "firmware-host/pelorus/demo.h"
 #include "firmware-host/pelorus/eval.h"
@@ -21,6 +22,7 @@ int run_tool(int argc, char** argv) {
   app.require_subcommand(1);
   std::vector<pelorus::Verb> verbs;
   verbs.push_back(pelorus::add_calib(app));
+  verbs.push_back(pelorus::add_can(app));
   verbs.push_back(pelorus::add_demo(app));
   verbs.push_back(pelorus::add_replay(app));
   verbs.push_back(pelorus::add_eval(app));
