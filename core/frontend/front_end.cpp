@@ -113,8 +113,10 @@ void FrontEnd::retry_lost() {
 // step 1); KLT then places them to sub-pixel accuracy, so that one tracker's error model holds for all points.
 void FrontEnd::bridge_by_surf() {
   detect();
-  descriptors_.resize(detected_points_.size());
-  surf_.describe(detected_points_, descriptors_);
+  const auto strongest = detected_points_.first(
+      std::min(detected_points_.size(), static_cast<std::size_t>(std::max(0, config_.bridge_points))));
+  descriptors_.resize(strongest.size());
+  surf_.describe(strongest, descriptors_);
   work_tasks_.clear();
   work_of_.clear();
   lost_points_.clear();
@@ -129,11 +131,11 @@ void FrontEnd::bridge_by_surf() {
     work_of_.push_back(t);
   }
   const auto gate = temporal_gate(static_cast<float>(config_.bridge_radius_px));
-  const auto matches = surf_matcher_.match(lost_points_, lost_descriptors_, detected_points_, descriptors_, gate);
+  const auto matches = surf_matcher_.match(lost_points_, lost_descriptors_, strongest, descriptors_, gate);
   std::size_t kept = 0;  // matches come ordered by `first`, so work_of_ can be packed in place
   for (const SurfMatch& match : matches) {
     const auto lost = static_cast<std::size_t>(match.first);
-    const SurfPoint& found = detected_points_[static_cast<std::size_t>(match.second)];
+    const SurfPoint& found = strongest[static_cast<std::size_t>(match.second)];
     work_tasks_.push_back(task_between(lost_points_[lost].u_px, lost_points_[lost].v_px, found.u_px, found.v_px));
     work_of_[kept++] = work_of_[lost];
   }

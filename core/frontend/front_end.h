@@ -18,7 +18,8 @@ namespace pelorus {
 struct FrontEndConfig {
   KltConfig klt;
   StereoMatchConfig stereo;
-  SurfConfig surf;
+  // All maxima, or nearly: the strongest alone would leave a dim sea floor beside a bright hull without points.
+  SurfConfig surf{.max_points = 6000};
   SurfMatchConfig surf_match;
   int max_points = 600;
   int cell_columns = 16;
@@ -37,6 +38,7 @@ struct FrontEndConfig {
   int reference_images = 8;
   double refill_below = 0.85;       // detect again when fewer than this share of max_points live
   int refill_every = 3;             // and at the latest after this many frames
+  int bridge_points = 1500;         // strongest points described to bridge a loss
   double bridge_radius_px = 250.0;  // how far SURF looks for a lost point
   double bridge_below = 0.35;       // share of points surviving KLT under which SURF bridges the loss
 };

@@ -15,6 +15,7 @@ struct Extent {
   double range_sum_m = 0;
   int points = 0;
   int previously_static = 0;
+  int previously_moving = 0;
   std::uint64_t cells = 0;
 
   void add(const PointPair& pair, const StereoRig& rig, const StaticGroupConfig& config) {
@@ -22,6 +23,7 @@ struct Extent {
     box_m.extend(pair.curr.p_cam);
     range_sum_m += pair.curr.p_cam.norm();
     previously_static += pair.previous_body == kWorldBody;
+    previously_moving += pair.previous_body > kWorldBody;
     ++points;
     const int column = std::clamp(static_cast<int>(pair.curr.z_px.x() * config.spread_columns / rig.width), 0,
                                   config.spread_columns - 1);
@@ -71,7 +73,7 @@ StaticChoice choose_static_group(const StereoRig& rig, PointPairs pairs, const P
               config.weight_box_3d * ratio(extent.box_m.diagonal().norm(), scene.box_m.diagonal().norm()) +
               config.weight_range * ratio(mean_range, mean_range + scene_range) +
               config.weight_spread * ratio(__builtin_popcountll(extent.cells), scene_cells) +
-              config.weight_history * ratio(extent.previously_static, extent.points);
+              config.weight_history * ratio(extent.previously_static - extent.previously_moving, extent.points);
       if (H_predicted) score += config.weight_prediction * prediction_agreement(rig, pairs, group, *H_predicted);
     }
     if (score > best) {

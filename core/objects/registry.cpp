@@ -12,18 +12,6 @@ namespace {
 
 const PointPair& at(PointPairs pairs, PointIndex i) { return pairs[static_cast<std::size_t>(i)]; }
 
-// Componentwise median: a mismatch far away does not move it.
-Eigen::Vector3d robust_centroid(std::vector<Eigen::Vector3d>& points) {
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
-  const auto middle = static_cast<std::ptrdiff_t>(points.size() / 2);
-  for (int axis = 0; axis < 3; ++axis) {
-    std::nth_element(points.begin(), points.begin() + middle, points.end(),
-                     [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; });
-    centroid[axis] = points[static_cast<std::size_t>(middle)][axis];
-  }
-  return centroid;
-}
-
 // The model's entry for a track: a new one takes the place of the longest unseen when the model is full.
 ModelPoint& model_entry(std::vector<ModelPoint>& model, TrackId id, const Track& track, int capacity) {
   const auto known = std::find_if(model.begin(), model.end(), [&](const ModelPoint& m) { return m.track == id; });
@@ -68,6 +56,12 @@ void Registry::predict(const Rigid3& T_world_prev, const Rigid3& T_world_curr, d
   }
 }
 
+bool Registry::is_confirmed(BodyId id) const {
+  return std::any_of(bodies_.begin(), bodies_.end(), [id](const MovingBody& body) {
+    return body.id == id && (body.phase == ObjectPhase::confirmed || body.phase == ObjectPhase::coasting);
+  });
+}
+
 void Registry::claim(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
                      std::span<const double> chi2_static, const WorldStep& world, const RegistrySteps& steps,
                      std::span<BodyId> owner) {
@@ -79,118 +73,6 @@ void Registry::claim(const StereoRig& rig, PointPairs pairs, std::span<const Poi
   }
 }
 
-void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Partition& groups,
-                     std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
-                     std::span<BodyId> owner) {
-  T_cam_obj_expected_.clear();
-  for (const MovingBody& body : bodies_) {
-    T_cam_obj_expected_.push_back(world.T_world_curr.inverse() * body.T_world_obj *
-                                  se3_exp(body.twist_obj * world.dt_s));
-  }
-  if (steps.merge) split_apart(rig, pairs, owner);
-  const std::size_t known = bodies_.size();
-  Group part_group;
-  for (const Group& group : groups.groups) {
-    part_.resize(group.members.size());
-    const int parts = steps.merge ? separate_parts(rig, pairs, group.members, config_.clusters, part_) : 1;
-    if (!steps.merge) std::fill(part_.begin(), part_.end(), 0);
-    const auto size_of = [&](int p) { return static_cast<double>(std::count(part_.begin(), part_.end(), p)); };
-    double in_bodies = 0;
-    for (int p = 0; p < parts && size_of(p) >= config_.min_points; ++p) in_bodies += size_of(p);
-    const auto all = static_cast<double>(group.members.size());
-    // Points scattered over the scene that happen to agree fall into crumbs; bodies hold most of their group.
-    if (static_inside(pairs, roles, group.members) > config_.max_static_inside) continue;
-    const int adopted = in_bodies >= config_.min_share_in_parts * all  ? parts
-                        : size_of(0) >= config_.min_share_of_one * all ? 1
-                                                                       : 0;
-    for (int p = 0; p < adopted && size_of(p) >= config_.min_points; ++p) {
-      part_group = group;
-      std::size_t kept = 0;
-      for (std::size_t m = 0; m < group.members.size(); ++m) {
-        if (part_[m] == p) part_group.members[kept++] = group.members[m];
-      }
-      part_group.members.resize(kept);
-      adopt_group(rig, pairs, roles, part_group, track_of_pair, world, steps, known, owner);
-    }
-  }
-}
-
-// Identity with a body in sight, else recognition of one that was out of sight, else a birth (paper 5.2.4).
-void Registry::adopt_group(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Group& group,
-                           std::span<const Track* const> track_of_pair, const WorldStep& world,
-                           const RegistrySteps& steps, std::size_t known, std::span<BodyId> owner) {
-  const std::span<const MovingBody> earlier(bodies_.data(), known);
-  if (steps.identity_mismatch) {
-    const IdentityMatch match = identify(rig, pairs, group, earlier, identity_);
-    if (match.body >= 0) {
-      MovingBody& body = bodies_[static_cast<std::size_t>(match.body)];
-      for (const PointIndex i : group.members) {
-        if (transfer_chi2(rig, body.H_curr_prev, at(pairs, i)) > kChi2_3dof_999) continue;
-        body.members.push_back(i);
-        owner[static_cast<std::size_t>(i)] = body.id;
-      }
-      return;
-    }
-  }
-  if (steps.reidentification) {
-    const Reidentified found = reidentify(rig, pairs, group, track_of_pair, earlier, T_cam_obj_expected_, world.time,
-                                          world.seed, reidentification_);
-    if (found.body >= 0) {
-      resume(rig, pairs, group, found, world, owner);
-      return;
-    }
-  }
-  if (spread_px(pairs, group.members) < config_.min_spread_px) return;
-  if (static_inside(pairs, roles, group.members) > config_.max_static_inside) return;
-  if (static_cast<int>(bodies_.size()) < kMaxObjects) give_birth(rig, pairs, group, world, owner);
-}
-
-// Paper section 4: the frame of the object is fixed at its birth b; here with axes parallel to the world's.
-void Registry::give_birth(const StereoRig& rig, PointPairs pairs, const Group& group, const WorldStep& world,
-                          std::span<BodyId> owner) {
-  MovingBody body(window_config_);
-  body.id = BodyId{next_id_++};
-  body.first_seen = world.time;
-  body.members = group.members;
-  body.H_curr_prev = group.H_curr_prev;
-  body.measured = true;
-  std::vector<Eigen::Vector3d> p_world;
-  for (const PointIndex i : group.members) {
-    p_world.push_back(world.T_world_prev * at(pairs, i).prev.p_cam);
-    owner[static_cast<std::size_t>(i)] = body.id;
-  }
-  body.T_world_obj = Rigid3::Identity();
-  body.T_world_obj.translation() = robust_centroid(p_world);
-  body.birth_centroid_world = body.T_world_obj.translation();
-  body.T_cam_obj = world.T_world_prev.inverse() * body.T_world_obj;
-  observations_.clear();
-  for (const PointIndex i : group.members) {
-    observations_.push_back({at(pairs, i).track, at(pairs, i).prev.z_px, at(pairs, i).sigma_px});
-  }
-  const auto dt = Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
-  body.window.add_frame(rig, world.time + dt, body.T_cam_obj, world.T_world_prev, observations_);
-  bodies_.push_back(std::move(body));
-}
-
-// The body is back: its pose comes from the matches, its window starts anew in the same frame.
-void Registry::resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
-                      const WorldStep& world, std::span<BodyId> owner) {
-  MovingBody& body = bodies_[static_cast<std::size_t>(found.body)];
-  body.members = group.members;
-  body.H_curr_prev = group.H_curr_prev;
-  body.T_cam_obj = group.H_curr_prev.inverse() * found.T_cam_obj;  // at the previous frame
-  body.T_world_obj = world.T_world_prev * body.T_cam_obj;
-  body.measured = true;
-  body.window.clear();
-  observations_.clear();
-  for (const PointIndex i : group.members) {
-    owner[static_cast<std::size_t>(i)] = body.id;
-    observations_.push_back({at(pairs, i).track, at(pairs, i).prev.z_px, at(pairs, i).sigma_px});
-  }
-  const auto dt = Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
-  body.window.add_frame(rig, world.time + dt, body.T_cam_obj, world.T_world_prev, observations_);
-}
-
 void Registry::settle(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
                       std::span<const double> chi2_static, std::span<const Track* const> track_of_pair,
                       const WorldStep& world, const RegistrySteps& steps, std::span<BodyId> owner) {
@@ -199,7 +81,7 @@ void Registry::settle(const StereoRig& rig, PointPairs pairs, std::span<const Po
       std::sort(body.members.begin(), body.members.end());
       measure(rig, pairs, track_of_pair, world, steps, body);
       weigh_evidence(rig, pairs, roles, chi2_static, world, body);
-    } else {
+    } else if (body.phase != ObjectPhase::ended) {
       coast(world, body);
     }
   }

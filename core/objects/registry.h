@@ -74,6 +74,8 @@ class Registry {
               const RegistrySteps& steps, std::span<BodyId> owner);
 
   [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
+  // Whether `id` names a body that was confirmed once and has not ended.
+  [[nodiscard]] bool is_confirmed(BodyId id) const;
 
  private:
   void measure(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
@@ -87,6 +89,8 @@ class Registry {
   void adopt_group(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Group& group,
                    std::span<const Track* const> track_of_pair, const WorldStep& world, const RegistrySteps& steps,
                    std::size_t known, std::span<BodyId> owner);
+  void recognise_tentative(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
+                           const WorldStep& world, std::span<BodyId> owner);
   void split_apart(const StereoRig& rig, PointPairs pairs, std::span<BodyId> owner);
   void give_birth(const StereoRig& rig, PointPairs pairs, const Group& group, const WorldStep& world,
                   std::span<BodyId> owner);

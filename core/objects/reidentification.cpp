@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/geometry/hull.h"
 #include "core/geometry/rigid_fit.h"
 #include "core/motion/motion_proposal.h"
 
@@ -20,6 +21,23 @@ double distance2(const SurfDescriptor& a, const SurfDescriptor& b) {
     sum += d * d;
   }
   return sum;
+}
+
+Eigen::Vector3d centre_of(PointPairs pairs, const Group& group) {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const PointIndex i : group.members) centre += pairs[static_cast<std::size_t>(i)].curr.p_cam;
+  return centre / static_cast<double>(group.members.size());
+}
+
+// How far, on average, a motion misses where the points went.
+double mean_miss_px(const StereoRig& rig, PointPairs pairs, const Group& group, const Rigid3& H_curr_prev) {
+  double sum_px = 0;
+  for (const PointIndex i : group.members) {
+    const PointPair& pair = pairs[static_cast<std::size_t>(i)];
+    const Eigen::Vector3d p_curr = H_curr_prev * pair.prev.p_cam;
+    sum_px += p_curr.z() > 0.05 ? (rig.project(p_curr) - pair.curr.z_px).head<2>().norm() : 1e3;
+  }
+  return sum_px / static_cast<double>(group.members.size());
 }
 
 std::vector<ModelMatch> match_model(PointPairs pairs, const Group& group, std::span<const Track* const> track_of_pair,
@@ -101,20 +119,40 @@ Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& gro
                         std::span<const Rigid3> T_cam_obj_expected, Timestamp now, std::uint64_t seed,
                         const ReidentificationConfig& config) {
   Reidentified found;
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const PointIndex i : group.members) center += pairs[static_cast<std::size_t>(i)].curr.p_cam;
-  center /= static_cast<double>(group.members.size());
+  const Eigen::Vector3d centre = centre_of(pairs, group);
   for (std::size_t j = 0; j < bodies.size(); ++j) {
     const MovingBody& body = bodies[j];
     if (body.phase != ObjectPhase::coasting) continue;
     const double gate_m = config.gate_m + config.growth_mps * seconds(now - body.last_seen) + body.extent_m.norm() / 2;
-    if ((T_cam_obj_expected[j] * body.centroid_obj - center).norm() > gate_m) continue;
+    if ((T_cam_obj_expected[j] * body.centroid_obj - centre).norm() > gate_m) continue;
     const auto matches = match_model(pairs, group, track_of_pair, body, config);
     if (static_cast<int>(matches.size()) < config.min_matches) continue;
     int count = 0;
     const auto T_cam_obj = fit_pose(rig, matches, seed + j, config, count);
     if (!T_cam_obj || count < config.min_matches || count <= found.matches) continue;
     found = {static_cast<std::int32_t>(j), *T_cam_obj, count};
+  }
+  return found;
+}
+
+Reidentified recognise_motion(const StereoRig& rig, PointPairs pairs, const Group& group,
+                              std::span<const MovingBody> bodies, std::span<const Rigid3> T_cam_obj_expected,
+                              const Rigid3& H_static, Timestamp now, const ReidentificationConfig& config) {
+  const double static_px = mean_miss_px(rig, pairs, group, H_static);
+  Reidentified found;
+  double least_px = std::min(config.motion_px, config.motion_share * static_px);
+  std::vector<Eigen::Vector3d> hull;
+  for (std::size_t j = 0; j < bodies.size(); ++j) {
+    const MovingBody& body = bodies[j];
+    if (body.phase != ObjectPhase::coasting) continue;
+    const double miss_px = mean_miss_px(rig, pairs, group, body.H_curr_prev);
+    if (miss_px > least_px) continue;
+    hull.clear();
+    for (const ModelPoint& point : body.model) hull.push_back(T_cam_obj_expected[j] * point.p_obj);
+    const double gate_m = config.growth_mps * seconds(now - body.last_seen);
+    if (distance_to_hull(hull, centre_of(pairs, group)) > gate_m) continue;
+    least_px = miss_px;
+    found = {static_cast<std::int32_t>(j), T_cam_obj_expected[j], 0};
   }
   return found;
 }

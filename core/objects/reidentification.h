@@ -18,6 +18,8 @@ struct ReidentificationConfig {
   double growth_mps = 0.25;
   double gate_chi2 = 16.266;
   int samples = 64;
+  double motion_px = 4.0;      // a body met where it is expected, moving as expected to this, is the same
+  double motion_share = 0.25;  // and to this share of its apparent motion against the static scene
 };
 
 struct Reidentified {
@@ -31,5 +33,13 @@ struct Reidentified {
                                       std::span<const Track* const> track_of_pair, std::span<const MovingBody> bodies,
                                       std::span<const Rigid3> T_cam_obj_expected, Timestamp now, std::uint64_t seed,
                                       const ReidentificationConfig& config);
+
+// The fall-back where descriptors fail, because the body turned or shows another side: the group is where the body is
+// expected and moves as it was moving. The pose is then the extrapolated one. Each body's H_curr_prev must be its
+// prediction for this step; H_static carries static points.
+[[nodiscard]] Reidentified recognise_motion(const StereoRig& rig, PointPairs pairs, const Group& group,
+                                            std::span<const MovingBody> bodies,
+                                            std::span<const Rigid3> T_cam_obj_expected, const Rigid3& H_static,
+                                            Timestamp now, const ReidentificationConfig& config);
 
 }  // namespace pelorus

@@ -35,4 +35,15 @@ double static_inside(PointPairs pairs, std::span<const PointRole> roles, std::sp
   return static_cast<double>(inside) / static_cast<double>(std::max<std::size_t>(1, members.size()));
 }
 
+Eigen::Vector3d robust_centroid(std::span<Eigen::Vector3d> points) {
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  const auto middle = static_cast<std::ptrdiff_t>(points.size() / 2);
+  for (int axis = 0; axis < 3; ++axis) {
+    std::nth_element(points.begin(), points.begin() + middle, points.end(),
+                     [axis](const auto& a, const auto& b) { return a[axis] < b[axis]; });
+    centroid[axis] = points[static_cast<std::size_t>(middle)][axis];
+  }
+  return centroid;
+}
+
 }  // namespace pelorus

@@ -1,5 +1,5 @@
 #pragma once
-// How a body's points lie in the image among the others. Pure. O(points).
+// How a body's points lie, in space and in the image among the others. Pure. O(points).
 
 #include "core/model/stage_data.h"
 
@@ -12,5 +12,8 @@ namespace pelorus {
 // holds few; points scattered over the scene that happen to agree hold many.
 [[nodiscard]] double static_inside(PointPairs pairs, std::span<const PointRole> roles,
                                    std::span<const PointIndex> members);
+
+// Componentwise median: a mismatch far away does not move it. Reorders the points; there must be some.
+[[nodiscard]] Eigen::Vector3d robust_centroid(std::span<Eigen::Vector3d> points);
 
 }  // namespace pelorus

@@ -55,28 +55,38 @@ void Pipeline::State::settle_bodies() {
 void Pipeline::State::start_points() {
   predictions.clear();
   predictions.push_back({kWorldBody, ego.H_curr_prev});
-  std::vector<RefillArea> areas;
-  for (const MovingBody& body : registry.bodies()) {
-    predictions.push_back({body.id, body.H_curr_prev});
-    if (!config.steps.object_refill || !body.measured) continue;
-    RefillArea area;
-    outline_of(body, 1.25, area.outline, area.outline_size);
-    area.points_inside = static_cast<int>(body.members.size());
-    areas.push_back(area);
-  }
+  for (const MovingBody& body : registry.bodies()) predictions.push_back({body.id, body.H_curr_prev});
+  refill_areas.clear();
   if (started && ego_found()) {
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       if (owner[i] == kNoBody && roles[i] == PointRole::fixed) owner[i] = kWorldBody;
     }
+    if (config.steps.object_refill) choose_refill_areas();
     drop_unexplained();
     front_end.settle(owner, predictions);
     front_end.drop(rejected);
   } else if (!started) {
     front_end.settle({}, predictions);
   }
-  front_end.refill(areas, !started || lost);
+  front_end.refill(refill_areas, !started || lost);
   result.report.points_started = front_end.counts().started;
   started = true;
+}
+
+// Where more points are wanted: on the bodies in sight, and where a body out of sight is expected back.
+void Pipeline::State::choose_refill_areas() {
+  for (const MovingBody& body : registry.bodies()) {
+    if (!body.measured && body.phase != ObjectPhase::coasting) continue;
+    RefillArea area;
+    if (body.measured) {
+      collect_members_px(body);
+      area.points_inside = static_cast<int>(body.members.size());
+    } else {
+      collect_model_px(body);
+    }
+    area.outline_size = outline_of(outline_points, 1.25, area.outline);
+    refill_areas.push_back(area);
+  }
 }
 
 // Points that leave the static scene by their record over the window, and points that fit nothing for long.
@@ -96,26 +106,38 @@ void Pipeline::State::drop_unexplained() {
   }
 }
 
-void Pipeline::State::outline_of(const MovingBody& body, double grow, std::array<OutlinePoint, 16>& outline,
-                                 int& size) const {
-  std::vector<Eigen::Vector2d> points;
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+void Pipeline::State::collect_members_px(const MovingBody& body) {
+  outline_points.clear();
   for (const PointIndex i : body.members) {
-    points.push_back(pairs[static_cast<std::size_t>(i)].curr.z_px.head<2>());
-    mean += points.back();
+    outline_points.push_back(pairs[static_cast<std::size_t>(i)].curr.z_px.head<2>());
   }
-  size = 0;
-  if (points.size() < 3) return;
+}
+
+// Where the known points of the body would be seen now.
+void Pipeline::State::collect_model_px(const MovingBody& body) {
+  outline_points.clear();
+  for (const ModelPoint& point : body.model) {
+    const Eigen::Vector3d p_cam = body.T_cam_obj * point.p_obj;
+    if (p_cam.z() > 0.05) outline_points.push_back(rig.project(p_cam).head<2>());
+  }
+}
+
+int Pipeline::State::outline_of(std::span<const Eigen::Vector2d> points, double grow,
+                                std::array<OutlinePoint, 16>& outline) {
+  if (points.size() < 3) return 0;
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& point : points) mean += point;
   mean /= static_cast<double>(points.size());
   std::array<Eigen::Vector2d, 16> hull;
-  size = convex_outline(points, hull);
+  const int size = convex_outline(points, hull);
   for (int k = 0; k < size; ++k) {
     const Eigen::Vector2d grown = mean + grow * (hull[static_cast<std::size_t>(k)] - mean);
     outline[static_cast<std::size_t>(k)] = {static_cast<float>(grown.x()), static_cast<float>(grown.y())};
   }
+  return size;
 }
 
-void Pipeline::State::publish_object(const MovingBody& body, ObjectState& object) const {
+void Pipeline::State::publish_object(const MovingBody& body, ObjectState& object) {
   object.id = body.id;
   object.phase = body.phase;
   object.motion_measured = body.measured;
@@ -128,7 +150,8 @@ void Pipeline::State::publish_object(const MovingBody& body, ObjectState& object
   object.last_seen = body.last_seen;
   object.centroid_world = body.T_world_obj * body.centroid_obj;
   object.extent_m = body.extent_m;
-  outline_of(body, 1.0, object.outline, object.outline_size);
+  collect_members_px(body);
+  object.outline_size = outline_of(outline_points, 1.0, object.outline);
 }
 
 void Pipeline::State::publish() {

@@ -33,7 +33,7 @@ struct EgoMotionConfig {
   int min_static_points = 12;         // fewer: LOST
   int degraded_static_points = 40;    // fewer: DEGRADED
   double degraded_confidence = 0.10;  // world_confidence below it: DEGRADED
-  double min_sigma_px = 0.03;         // limits of the pixel deviation learned on line
+  double min_sigma_px = 0.02;         // limits of the pixel deviation learned on line
   double max_sigma_px = 1.0;
   double start_sigma_px = 0.25;
   double sigma_learning_rate = 0.1;  // per frame

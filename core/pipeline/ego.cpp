@@ -83,9 +83,10 @@ void Pipeline::State::find_world() {
     ego_outcome = StageOutcome::too_few_points;
     return;
   }
-  ego = fit_motion(group.members, group.H_curr_prev);
-  ego_outcome = ego.outcome == StageOutcome::not_converged ? StageOutcome::ok : ego.outcome;
   for (const PointIndex i : group.members) roles[static_cast<std::size_t>(i)] = PointRole::fixed;
+  collect_fixed();
+  ego = fit_motion(fixed, group.H_curr_prev);
+  ego_outcome = ego.outcome == StageOutcome::not_converged ? StageOutcome::ok : ego.outcome;
 }
 
 MotionFit Pipeline::State::fit_motion(std::span<const PointIndex> members, const Rigid3& H_start) {
@@ -124,7 +125,18 @@ void Pipeline::State::split_static_from_moving() {
   collect_fixed();
 }
 
+// The points that carry the ego motion. A known body at rest moves with the world until it sets off, slowly: its points
+// would drag the world along before they can be told apart, so they carry nothing as long as others can.
 void Pipeline::State::collect_fixed() {
+  fixed.clear();
+  std::size_t all = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    if (roles[i] != PointRole::fixed) continue;
+    ++all;
+    if (!registry.is_confirmed(pairs[i].previous_body)) fixed.push_back(static_cast<PointIndex>(i));
+  }
+  const auto enough = std::max(all / 2, static_cast<std::size_t>(config.ego_motion.min_static_points));
+  if (fixed.size() >= enough) return;
   fixed.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     if (roles[i] == PointRole::fixed) fixed.push_back(static_cast<PointIndex>(i));

@@ -30,8 +30,12 @@ struct Pipeline::State {
   void collect_fixed();
   void learn_sigma(double rate);
   void drop_unexplained();
-  void publish_object(const MovingBody& body, ObjectState& object) const;
-  void outline_of(const MovingBody& body, double grow, std::array<OutlinePoint, 16>& outline, int& size) const;
+  void choose_refill_areas();
+  void publish_object(const MovingBody& body, ObjectState& object);
+  void collect_members_px(const MovingBody& body);
+  void collect_model_px(const MovingBody& body);
+  // Convex outline of the points, grown about their mean; returns its number of vertices.
+  static int outline_of(std::span<const Eigen::Vector2d> points, double grow, std::array<OutlinePoint, 16>& outline);
 
   PipelineConfig config;
   StereoRig rig;
@@ -74,6 +78,8 @@ struct Pipeline::State {
   std::vector<double> residuals;
   std::vector<WindowObservation> observations;
   std::vector<TrackId> rejected;
+  std::vector<RefillArea> refill_areas;
+  std::vector<Eigen::Vector2d> outline_points;  // scratch of outline_of
   std::vector<PointView> views;
   FrameResult result;
 };

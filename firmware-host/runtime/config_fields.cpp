@@ -46,6 +46,7 @@ void list(FieldList& f, FrontEndConfig& c) {
   f.add("refill_below", c.refill_below, 0, 1);
   f.add("refill_every", c.refill_every, 1, 1000);
   f.add("bridge_below", c.bridge_below, 0, 1);
+  f.add("bridge_points", c.bridge_points, 10, 20000);
   f.add("bridge_radius_px", c.bridge_radius_px, 1, 5000);
 }
 
@@ -211,6 +212,8 @@ void list(FieldList& f, ReidentificationConfig& c) {
   f.add("growth_mps", c.growth_mps, 0, 100);
   f.add("gate_chi2", c.gate_chi2, 0.1, kMaxChi2);
   f.add("samples", c.samples, 1, 10000);
+  f.add("motion_px", c.motion_px, 0, 1000);
+  f.add("motion_share", c.motion_share, 0, 1);
 }
 
 void list(FieldList& f, RegistryConfig& c) {
