@@ -5,21 +5,24 @@
 #include <string>
 
 #include "core/pipeline/config.h"
+#include "firmware-host/runtime/camera_config.h"
 #include "services/service_settings.h"
 
 namespace pelorus {
 
 // Where stereo pairs come from.
 struct SourceConfig {
-  std::string kind = "replay";  // replay: a recorded data set; synthetic: a scene, rendered live
+  std::string kind = "replay";  // replay: a recorded data set; synthetic: a scene, rendered live;
+                                // aravis: GigE Vision cameras
   std::string path;             // data-set folder, or scene file
-  std::string calibration;      // file that replaces the source's own; empty = its own
+  std::string calibration;      // file that replaces the source's own; empty = its own; live cameras need one
   double rate_hz = 0;           // pairs follow each other at this rate; 0 = at their recorded times
   bool repeat = false;          // recorded pairs start anew at their end; else the service ends there
 };
 
 struct ServiceConfig {
   SourceConfig source;
+  CameraConfig camera;
   TimingConfig timing;
   CaptureWatchConfig capture;
   LcmConfig lcm;

@@ -8,11 +8,36 @@ namespace {
 
 void list(FieldList& f, SourceConfig& c) {
   f.section("source");
-  f.add("kind", c.kind, {"replay", "synthetic"});
+  f.add("kind", c.kind, {"replay", "synthetic", "aravis"});
   f.add("path", c.path);
   f.add("calibration", c.calibration);
   f.add("rate_hz", c.rate_hz, 0, 1000);
   f.add("repeat", c.repeat);
+}
+
+void list(FieldList& f, CameraConfig& c) {
+  f.section("camera");
+  f.add("left", c.left);
+  f.add("right", c.right);
+  f.add("pixel_format", c.pixel_format);
+  f.add("width_px", c.width_px, 0, 20000);
+  f.add("height_px", c.height_px, 0, 20000);
+  f.add("rate_hz", c.rate_hz, 0, 1000);
+  f.add("exposure_ms", c.exposure_ms, 0, 1000);
+  f.add("gain_db", c.gain_db, -1, 100);
+  f.add("trigger", c.trigger);
+  f.add("pair_by", c.pair_by, {"time", "sequence"});
+  f.add("tolerance_ms", c.tolerance_ms, 0.001, 500);
+  f.add("clock", c.clock, {"free_running", "ptp"});
+  f.add("stamp_at", c.stamp_at, {"exposure_start", "mid_exposure", "exposure_end"});
+  f.add("packet_bytes", c.packet_bytes, 576, 16000);
+  f.add("packet_socket", c.packet_socket);
+  f.add("socket_buffer_mb", c.socket_buffer_mb, 0.1, 256);
+  f.add("resend", c.resend);
+  f.add("frame_retention_ms", c.frame_retention_ms, 1, 10000);
+  f.add("buffers", c.buffers, 2, 64);
+  f.add("ring_slots", c.ring_slots, 8, 64);
+  f.add("reopen_after_s", c.reopen_after_s, 0.2, 60);
 }
 
 void list(FieldList& f, TimingConfig& c) {
@@ -43,6 +68,7 @@ void list(FieldList& f, LcmConfig& c) {
 std::vector<ConfigField> service_fields(ServiceConfig& config) {
   FieldList fields;
   list(fields, config.source);
+  list(fields, config.camera);
   list(fields, config.timing);
   list(fields, config.capture);
   list(fields, config.lcm);
@@ -56,6 +82,11 @@ std::vector<std::string> service_conflicts(const ServiceConfig& config) {
   };
   // LCM takes 63 characters; the longest of our channels adds ".VIS_COMMAND_ACK" to the vehicle.
   require(!config.lcm.vehicle.empty() && config.lcm.vehicle.size() <= 40, "lcm.vehicle must have 1 to 40 characters");
+  const bool live = config.source.kind == "aravis";
+  require(!live || !config.camera.left.empty(), "camera.left must name a device when source.kind is a live camera");
+  require(!live || !config.source.calibration.empty(), "source.calibration must name a file for live cameras");
+  require(config.camera.rate_hz <= 0 || config.camera.tolerance_ms < 500 / config.camera.rate_hz,
+          "camera.tolerance_ms must be below half the period of camera.rate_hz");
   return conflicts;
 }
 

@@ -163,6 +163,7 @@ TEST(ConfigFields, HoldEveryMemberOfEveryStruct) {
 TEST(ServiceFields, HoldEveryMemberOfEveryStruct) {
   const std::map<std::string_view, std::size_t> expected{
       {"source", member_count<SourceConfig>()},
+      {"camera", member_count<CameraConfig>()},
       {"timing", member_count<TimingConfig>()},
       {"capture", member_count<CaptureWatchConfig>()},
       {"lcm", member_count<LcmConfig>()},
@@ -179,6 +180,15 @@ TEST_F(ConfigFile, TextsTakeTheListedWordsOnly) {
   const std::string message = problems_of("source:\n  kind: replays\n  path: [a]\n");
   EXPECT_NE(message.find("did you mean 'replay'?"), std::string::npos) << message;
   EXPECT_NE(message.find(line(3)), std::string::npos) << message;
+}
+
+TEST_F(ConfigFile, LiveCamerasNeedADeviceACalibrationAndATolerance) {
+  EXPECT_NE(problems_of("source:\n  kind: aravis\n  calibration: c\n").find("camera.left"), std::string::npos);
+  const std::string camera = "camera:\n  left: 10.0.0.1\n  right: 10.0.0.2\n";
+  EXPECT_NE(problems_of("source:\n  kind: aravis\n" + camera).find("source.calibration"), std::string::npos);
+  const std::string source = "source:\n  kind: aravis\n  calibration: c\n";
+  EXPECT_EQ(problems_of(source + camera), "none");
+  EXPECT_NE(problems_of(source + camera + "  tolerance_ms: 25\n").find("half the period"), std::string::npos);
 }
 
 TEST_F(ConfigFile, ServiceAndPipelineSettingsComeFromOneFile) {

@@ -1,0 +1,69 @@
+#include "firmware-host/runtime/camera_config.h"
+
+#include <cmath>
+#include <utility>
+
+#ifdef PELORUS_WITH_ARAVIS
+#include "drivers/aravis/aravis_camera.h"
+#endif
+
+namespace pelorus {
+namespace {
+
+using Cameras = std::vector<std::unique_ptr<Camera>>;
+
+Error refused(const std::string& key, const std::string& what, const std::string& cure) {
+  return {ErrorCode::bad_configuration, "camera." + key, what, cure};
+}
+
+#ifdef PELORUS_WITH_ARAVIS
+AravisConfig aravis_config(const CameraConfig& c, const std::string& device) {
+  AravisConfig a;
+  a.device = device;
+  if (!c.pixel_format.empty()) a.pixel_format = c.pixel_format;
+  a.width_px = c.width_px;
+  a.height_px = c.height_px;
+  a.rate_hz = c.rate_hz;
+  a.exposure_us = c.exposure_ms * 1000;
+  a.gain_db = c.gain_db;
+  a.trigger = c.trigger;
+  a.packet_bytes = c.packet_bytes;
+  a.buffers = c.buffers;
+  a.packet_socket = c.packet_socket;
+  a.socket_buffer_bytes = static_cast<int>(std::lround(c.socket_buffer_mb * 1024 * 1024));
+  a.resend = c.resend;
+  a.frame_retention_ms = c.frame_retention_ms;
+  a.clock = c.clock == "ptp" ? DeviceClockKind::ptp : DeviceClockKind::free_running;
+  a.stamp_at = c.stamp_at == "exposure_end"   ? StampAt::exposure_end
+               : c.stamp_at == "mid_exposure" ? StampAt::mid_exposure
+                                              : StampAt::exposure_start;
+  return a;
+}
+#endif
+
+Result<Cameras> make_aravis([[maybe_unused]] const CameraConfig& config, [[maybe_unused]] const CaptureClock& clock) {
+#ifdef PELORUS_WITH_ARAVIS
+  if (config.right.empty()) return refused("right", "is not given", "GigE Vision needs two cameras: name both");
+  Cameras cameras;
+  for (const std::string& device : {config.left, config.right})
+    cameras.push_back(std::make_unique<AravisCamera>(aravis_config(config, device), clock));
+  return cameras;
+#else
+  return refused("left", "GigE Vision is not built in", "build with -DPELORUS_WITH_ARAVIS=ON");
+#endif
+}
+
+}  // namespace
+
+StereoSyncConfig sync_config(const CameraConfig& config) {
+  return {config.pair_by == "sequence" ? PairBy::sequence : PairBy::time, config.tolerance_ms};
+}
+
+Result<Cameras> make_cameras(const std::string& driver, const CameraConfig& config, const CaptureClock& clock) {
+  if (config.left.empty()) return refused("left", "is not given", "name the left camera's address or device file");
+  if (config.left == config.right) return refused("right", "is the left camera again", "name the other one");
+  if (driver == "aravis") return make_aravis(config, clock);
+  return refused("left", "no driver '" + driver + "' for live cameras", "set source.kind");
+}
+
+}  // namespace pelorus

@@ -1,0 +1,47 @@
+#include "firmware-host/runtime/camera_config.h"
+
+#include <gtest/gtest.h>
+
+namespace pelorus {
+namespace {
+
+std::string problem_of(const std::string& driver, const CameraConfig& config) {
+  const CaptureClock clock;
+  const auto cameras = make_cameras(driver, config, clock);
+  return cameras ? "none" : cameras.error().message();
+}
+
+TEST(CameraConfig, MakesACameraForEachDeviceWithoutOpeningIt) {
+  CameraConfig config;
+  config.left = "192.0.2.1";
+  config.right = "192.0.2.2";
+  const CaptureClock clock;
+  const auto cameras = make_cameras("aravis", config, clock);
+  ASSERT_TRUE(cameras.ok()) << cameras.error().message();
+  EXPECT_EQ(cameras.value().size(), 2U);
+  EXPECT_EQ(cameras.value()[0]->statistics().opened, 0U);
+}
+
+TEST(CameraConfig, RefusesWhatCannotBe) {
+  CameraConfig config;
+  EXPECT_NE(problem_of("aravis", config).find("camera.left"), std::string::npos);
+  config.left = "192.0.2.1";
+  EXPECT_NE(problem_of("aravis", config).find("camera.right"), std::string::npos);
+  config.right = config.left;
+  EXPECT_NE(problem_of("aravis", config).find("left camera again"), std::string::npos);
+  config.right = "192.0.2.2";
+  EXPECT_NE(problem_of("telepathy", config).find("telepathy"), std::string::npos);
+  EXPECT_EQ(problem_of("aravis", config), "none");
+}
+
+TEST(CameraConfig, PairsAsConfigured) {
+  CameraConfig config;
+  EXPECT_EQ(sync_config(config).pair_by, PairBy::time);
+  config.pair_by = "sequence";
+  config.tolerance_ms = 7;
+  EXPECT_EQ(sync_config(config).pair_by, PairBy::sequence);
+  EXPECT_EQ(sync_config(config).tolerance_ms, 7);
+}
+
+}  // namespace
+}  // namespace pelorus
