@@ -41,7 +41,7 @@ typedef enum {
 enum {
   PELORUS_CAN_VELOCITY = 1 << 0,
   PELORUS_CAN_ATTITUDE = 1 << 1,
-  PELORUS_CAN_STEP = 1 << 2, /* only when the estimate before was received too */
+  PELORUS_CAN_STEP = 1 << 2, /* only when the estimate before was received and had one */
   PELORUS_CAN_TURN = 1 << 3, /* FD only, as STEP */
   PELORUS_CAN_AGE = 1 << 4,
   PELORUS_CAN_INTERVAL = 1 << 5,
@@ -63,11 +63,11 @@ typedef struct {
   bool reset;           /* `resets` differs from the last estimate that was handed out */
 
   float interval_s;      /* the step's duration: measured_us is its end */
-  float velocity_mps[3]; /* body axes at the measurement, mean over the interval */
+  float velocity_mps[3]; /* body axes, constant over the last frame interval */
   float velocity_variance_m2ps2[3];
-  float step_m[3]; /* way since the estimate before, body axes then */
+  float step_m[3]; /* way during interval_s, body axes at its beginning */
   float step_variance_m2[3];
-  float turn_rad[3]; /* rotation vector since the estimate before, FD only */
+  float turn_rad[3]; /* rotation vector during interval_s, FD only */
   float turn_variance_rad2[3];
   float roll_rad, pitch_rad, yaw_rad; /* since start; NOT against gravity or north */
   float attitude_variance_rad2;

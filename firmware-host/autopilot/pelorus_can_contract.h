@@ -18,13 +18,13 @@
 /* VIS_VEL: Velocity of the vehicle */
 #define PELORUS_CAN_VEL_OFFSET 0u
 #define PELORUS_CAN_VEL_SIZE 8u
-/* Speed of the body origin through the static scene, + forward; mean over INTERVAL. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
+/* Speed of the body origin through the static scene, + forward; constant over the last frame interval. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
 #define PELORUS_CAN_VEL_VX_BYTE 2u
 #define PELORUS_CAN_VEL_VX_SCALE 0.001f
-/* Speed of the body origin, + to starboard; mean over INTERVAL. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
+/* Speed of the body origin, + to starboard; constant over the last frame interval. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
 #define PELORUS_CAN_VEL_VY_BYTE 4u
 #define PELORUS_CAN_VEL_VY_SCALE 0.001f
-/* Speed of the body origin, + down; mean over INTERVAL. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
+/* Speed of the body origin, + down; constant over the last frame interval. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
 #define PELORUS_CAN_VEL_VZ_BYTE 6u
 #define PELORUS_CAN_VEL_VZ_SCALE 0.001f
 
@@ -41,23 +41,23 @@
 #define PELORUS_CAN_ATT_YAW_BYTE 6u
 #define PELORUS_CAN_ATT_YAW_SCALE 0.0001f
 
-/* VIS_POS: Way since the estimate before */
+/* VIS_POS: Way during INTERVAL */
 #define PELORUS_CAN_POS_OFFSET 2u
 #define PELORUS_CAN_POS_SIZE 8u
-/* Way since the estimate with COUNTER - 1, + forward in the body axes at that estimate; use only when COUNTER went up by exactly 1. int16, 0.0001 m per step, +-3.2767 m; invalid: 0x8000. */
+/* Way during INTERVAL, + forward in the body axes at its beginning; use only when COUNTER went up by exactly 1 since an estimate with QUALITY > 0. int16, 0.0001 m per step, +-3.2767 m; invalid: 0x8000. */
 #define PELORUS_CAN_POS_DX_BYTE 2u
 #define PELORUS_CAN_POS_DX_SCALE 0.0001f
-/* Way since the estimate with COUNTER - 1, + to starboard in the body axes at that estimate. int16, 0.0001 m per step, +-3.2767 m; invalid: 0x8000. */
+/* Way during INTERVAL, + to starboard in the body axes at its beginning. int16, 0.0001 m per step, +-3.2767 m; invalid: 0x8000. */
 #define PELORUS_CAN_POS_DY_BYTE 4u
 #define PELORUS_CAN_POS_DY_SCALE 0.0001f
-/* Way since the estimate with COUNTER - 1, + down in the body axes at that estimate. int16, 0.0001 m per step, +-3.2767 m; invalid: 0x8000. */
+/* Way during INTERVAL, + down in the body axes at its beginning. int16, 0.0001 m per step, +-3.2767 m; invalid: 0x8000. */
 #define PELORUS_CAN_POS_DZ_BYTE 6u
 #define PELORUS_CAN_POS_DZ_SCALE 0.0001f
 
 /* VIS_TIME: Length of the step, declared latency */
 #define PELORUS_CAN_TIME_OFFSET 3u
 #define PELORUS_CAN_TIME_SIZE 8u
-/* Time from the measurement with COUNTER - 1 to this one. int16, 0.0001 s per step, +-3.2767 s; invalid: 0x8000. */
+/* Time that DX DY DZ span, up to this measurement: since the estimate with COUNTER - 1 if it had QUALITY > 0. int16, 0.0001 s per step, +-3.2767 s; invalid: 0x8000. */
 #define PELORUS_CAN_TIME_INTERVAL_BYTE 2u
 #define PELORUS_CAN_TIME_INTERVAL_SCALE 0.0001f
 #define PELORUS_CAN_TIME_INTERVAL_US 100u
@@ -87,7 +87,7 @@
 /* VIS_OBJ_RATE: Nearest moving body: how sure */
 #define PELORUS_CAN_OBJ_RATE_OFFSET 5u
 #define PELORUS_CAN_OBJ_RATE_SIZE 8u
-/* Nearest moving body: speed at which RANGE shrinks, + coming nearer; mean over INTERVAL. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
+/* Nearest moving body: speed at which RANGE shrinks, + coming nearer; mean over the last frame interval. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
 #define PELORUS_CAN_OBJ_RATE_CLOSING_BYTE 2u
 #define PELORUS_CAN_OBJ_RATE_CLOSING_SCALE 0.001f
 /* Nearest moving body: n/(n+10) for n points that move as it does, half while coasting. uint8, 0..254 %; invalid: 0xFF. */
@@ -179,7 +179,7 @@
 #define PELORUS_CAN_FD_AGE_BYTE 4u
 #define PELORUS_CAN_FD_AGE_SCALE 0.0001f
 #define PELORUS_CAN_FD_AGE_US 100u
-/* Time from the measurement with COUNTER - 1 to this one. int16, 0.0001 s per step, +-3.2767 s; invalid: 0x8000. */
+/* Time that DX DY DZ span, up to this measurement: since the estimate with COUNTER - 1 if it had QUALITY > 0. int16, 0.0001 s per step, +-3.2767 s; invalid: 0x8000. */
 #define PELORUS_CAN_FD_INTERVAL_BYTE 6u
 #define PELORUS_CAN_FD_INTERVAL_SCALE 0.0001f
 #define PELORUS_CAN_FD_INTERVAL_US 100u
@@ -187,17 +187,17 @@
 #define PELORUS_CAN_FD_QUALITY_BYTE 8u
 /* Goes up by one after each loss of tracking: position and attitude may have jumped, do not difference across it. uint8, 0..255; invalid: none. */
 #define PELORUS_CAN_FD_RESETS_BYTE 9u
-/* Way since the estimate with COUNTER - 1, + forward in the body axes at that estimate; use only when COUNTER went up by exactly 1. binary32, m; invalid: NaN. */
+/* Way during INTERVAL, + forward in the body axes at its beginning; use only when COUNTER went up by exactly 1 since an estimate with QUALITY > 0. binary32, m; invalid: NaN. */
 #define PELORUS_CAN_FD_DX_BYTE 10u
-/* Way since the estimate with COUNTER - 1, + to starboard in the body axes at that estimate. binary32, m; invalid: NaN. */
+/* Way during INTERVAL, + to starboard in the body axes at its beginning. binary32, m; invalid: NaN. */
 #define PELORUS_CAN_FD_DY_BYTE 14u
-/* Way since the estimate with COUNTER - 1, + down in the body axes at that estimate. binary32, m; invalid: NaN. */
+/* Way during INTERVAL, + down in the body axes at its beginning. binary32, m; invalid: NaN. */
 #define PELORUS_CAN_FD_DZ_BYTE 18u
-/* Rotation vector of R_prev_curr since COUNTER - 1, + rolls starboard down. binary32, rad; invalid: NaN. */
+/* Rotation vector of R_prev_curr during INTERVAL, + rolls starboard down. binary32, rad; invalid: NaN. */
 #define PELORUS_CAN_FD_RX_BYTE 22u
-/* Rotation vector of R_prev_curr since COUNTER - 1, + pitches bow up. binary32, rad; invalid: NaN. */
+/* Rotation vector of R_prev_curr during INTERVAL, + pitches bow up. binary32, rad; invalid: NaN. */
 #define PELORUS_CAN_FD_RY_BYTE 26u
-/* Rotation vector of R_prev_curr since COUNTER - 1, + yaws to starboard. binary32, rad; invalid: NaN. */
+/* Rotation vector of R_prev_curr during INTERVAL, + yaws to starboard. binary32, rad; invalid: NaN. */
 #define PELORUS_CAN_FD_RZ_BYTE 30u
 /* Variance of DX. binary16, mm^2, rounded up; infinity: more than 65504 mm^2; invalid: NaN. */
 #define PELORUS_CAN_FD_VAR_DX_BYTE 34u
@@ -229,7 +229,7 @@
 /* Nearest moving body: distance of its center from the body origin. int16, 0.01 m per step, +-327.67 m; invalid: 0x8000. */
 #define PELORUS_CAN_FD_RANGE_BYTE 56u
 #define PELORUS_CAN_FD_RANGE_SCALE 0.01f
-/* Nearest moving body: speed at which RANGE shrinks, + coming nearer; mean over INTERVAL. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
+/* Nearest moving body: speed at which RANGE shrinks, + coming nearer; mean over the last frame interval. int16, 0.001 m/s per step, +-32.767 m/s; invalid: 0x8000. */
 #define PELORUS_CAN_FD_CLOSING_BYTE 58u
 #define PELORUS_CAN_FD_CLOSING_SCALE 0.001f
 /* Nearest moving body: n/(n+10) for n points that move as it does, half while coasting. uint8, 0..254 %; invalid: 0xFF. */

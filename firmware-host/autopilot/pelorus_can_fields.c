@@ -210,25 +210,24 @@ static void read_classic(const pelorus_can_receiver* rx, pelorus_can_estimate* e
             CLASSIC(rx, OBJ_RATE) + PELORUS_CAN_OBJ_RATE_CLOSING_BYTE);
 }
 
-/* VIS_FD carries no velocity: it is the way over the interval, turned into the axes at the end of the step by the
- * series of exp(-[r]x) d. Eight terms are exact to a float for turns up to one radian. */
+/* VIS_FD carries no velocity: it is the constant twist that makes this way d and turn r in the interval,
+ * v = J(r)^-1 d / dt with J^-1 = sum of B_n / n! [r]x^n (Barfoot 2017, 7.1.5). Up to n = 8: exact to a float for turns
+ * up to one radian. */
 static void derive_velocity(pelorus_can_estimate* e) {
+  static const float b[9] = {1.0f, -0.5f, 1.0f / 12, 0, -1.0f / 720, 0, 1.0f / 30240, 0, -1.0f / 1209600};
   const float* r = e->turn_rad;
   float term[3];
-  float sum[3];
+  float way[3] = {0, 0, 0};
   if (!(e->valid & PELORUS_CAN_INTERVAL)) return;
   memcpy(term, e->step_m, sizeof term);
-  memcpy(sum, term, sizeof sum);
-  for (int k = 1; k <= 8; ++k) {
+  for (int n = 0; n < 9; ++n) {
     const float cross[3] = {r[1] * term[2] - r[2] * term[1], r[2] * term[0] - r[0] * term[2],
                             r[0] * term[1] - r[1] * term[0]};
-    for (int i = 0; i < 3; ++i) {
-      term[i] = -cross[i] / (float)k;
-      sum[i] += term[i];
-    }
+    for (int i = 0; i < 3; ++i) way[i] += b[n] * term[i];
+    memcpy(term, cross, sizeof term);
   }
   for (int i = 0; i < 3; ++i) {
-    e->velocity_mps[i] = sum[i] / e->interval_s;
+    e->velocity_mps[i] = way[i] / e->interval_s;
     e->velocity_variance_m2ps2[i] = e->step_variance_m2[i] / (e->interval_s * e->interval_s);
   }
   e->valid |= PELORUS_CAN_VELOCITY;
@@ -285,6 +284,7 @@ static void read_fd(const pelorus_can_receiver* rx, pelorus_can_estimate* e, boo
 
 void pelorus_can_read_estimate(pelorus_can_receiver* rx, bool step_usable) {
   pelorus_can_estimate* e = &rx->estimate;
+  step_usable = step_usable && is_usable(e); /* `e` is still the estimate before */
   clear(e);
   e->received_us = rx->now_us;
   e->counter = rx->pending_counter;

@@ -92,7 +92,7 @@ std::uint64_t raw_of(const CanSignal& signal, double value) {
 }
 
 double value_of(const CanSignal& signal, std::uint64_t raw) {
-  if (raw == invalid_raw(signal)) return kUnknown;
+  if (raw == invalid_raw(signal)) return kCanUnknown;
   switch (signal.coding) {
     case CanCoding::signed_integer: {
       const int unused = 64 - signal.bits;
@@ -111,7 +111,7 @@ double value_of(const CanSignal& signal, std::uint64_t raw) {
     case CanCoding::state:
       return static_cast<double>(raw) * signal.scale;
   }
-  return kUnknown;
+  return kCanUnknown;
 }
 
 std::uint64_t extract(const CanSignal& signal, std::span<const std::uint8_t> bytes) {
@@ -133,7 +133,7 @@ std::optional<std::uint64_t> invalid_raw(const CanSignal& signal) {
     case CanCoding::log_sigma:
       return mask_of(signal);
     case CanCoding::float16:
-      return std::uint64_t{half_from(kUnknown)};
+      return std::uint64_t{half_from(kCanUnknown)};
     case CanCoding::float32:
       return std::uint64_t{0x7FC00000};
     case CanCoding::crc:

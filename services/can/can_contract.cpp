@@ -76,26 +76,29 @@ constexpr CanSignal bits(const char* name, int byte, int count, double E::*field
   return {name, 8 * byte, count, CanCoding::unsigned_integer, 1, "", CanBeyond::wraps, field, meaning};
 }
 
-constexpr const char* kVx = "Speed of the body origin through the static scene, + forward; mean over INTERVAL";
-constexpr const char* kVy = "Speed of the body origin, + to starboard; mean over INTERVAL";
-constexpr const char* kVz = "Speed of the body origin, + down; mean over INTERVAL";
+constexpr const char* kVx =
+    "Speed of the body origin through the static scene, + forward; constant over the last frame interval";
+constexpr const char* kVy = "Speed of the body origin, + to starboard; constant over the last frame interval";
+constexpr const char* kVz = "Speed of the body origin, + down; constant over the last frame interval";
 constexpr const char* kRoll =
     "Roll since start, + starboard side down; relative to the attitude at start, NOT to gravity";
 constexpr const char* kPitch = "Pitch since start, + bow up; relative to the attitude at start, NOT to gravity";
 constexpr const char* kYaw = "Yaw since start, + bow to starboard; relative to the heading at start, NOT to north";
 constexpr const char* kDx =
-    "Way since the estimate with COUNTER - 1, + forward in the body axes at that estimate; use only when COUNTER went "
-    "up by exactly 1";
-constexpr const char* kDy = "Way since the estimate with COUNTER - 1, + to starboard in the body axes at that estimate";
-constexpr const char* kDz = "Way since the estimate with COUNTER - 1, + down in the body axes at that estimate";
-constexpr const char* kInterval = "Time from the measurement with COUNTER - 1 to this one";
+    "Way during INTERVAL, + forward in the body axes at its beginning; use only when COUNTER went up by exactly 1 "
+    "since an "
+    "estimate with QUALITY > 0";
+constexpr const char* kDy = "Way during INTERVAL, + to starboard in the body axes at its beginning";
+constexpr const char* kDz = "Way during INTERVAL, + down in the body axes at its beginning";
+constexpr const char* kInterval =
+    "Time that DX DY DZ span, up to this measurement: since the estimate with COUNTER - 1 if it had QUALITY > 0";
 constexpr const char* kLatency = "Declared latency from mid-exposure to sending: the autopilot's delay parameter";
 constexpr const char* kBodies = "Moving bodies tracked now; 254 or more: 254";
 constexpr const char* kBearing = "Nearest moving body seen from the body origin: + to starboard of the bow";
 constexpr const char* kElevation = "Nearest moving body: + above the body's x-y plane";
 constexpr const char* kRange = "Nearest moving body: distance of its center from the body origin";
 constexpr const char* kClosing =
-    "Nearest moving body: speed at which RANGE shrinks, + coming nearer; mean over INTERVAL";
+    "Nearest moving body: speed at which RANGE shrinks, + coming nearer; mean over the last frame interval";
 constexpr const char* kConfidence =
     "Nearest moving body: n/(n+10) for n points that move as it does, half while coasting";
 constexpr const char* kObjectId = "Nearest moving body: its identity modulo 255; a change is another body";
@@ -215,9 +218,9 @@ constexpr std::array kFd{
     single("DX", 10, "m", &E::step_x_m, kDx),
     single("DY", 14, "m", &E::step_y_m, kDy),
     single("DZ", 18, "m", &E::step_z_m, kDz),
-    single("RX", 22, "rad", &E::turn_x_rad, "Rotation vector of R_prev_curr since COUNTER - 1, + rolls starboard down"),
-    single("RY", 26, "rad", &E::turn_y_rad, "Rotation vector of R_prev_curr since COUNTER - 1, + pitches bow up"),
-    single("RZ", 30, "rad", &E::turn_z_rad, "Rotation vector of R_prev_curr since COUNTER - 1, + yaws to starboard"),
+    single("RX", 22, "rad", &E::turn_x_rad, "Rotation vector of R_prev_curr during INTERVAL, + rolls starboard down"),
+    single("RY", 26, "rad", &E::turn_y_rad, "Rotation vector of R_prev_curr during INTERVAL, + pitches bow up"),
+    single("RZ", 30, "rad", &E::turn_z_rad, "Rotation vector of R_prev_curr during INTERVAL, + yaws to starboard"),
     half("VAR_DX", 34, "mm^2", &E::step_var_x_mm2, "Variance of DX"),
     half("VAR_DY", 36, "mm^2", &E::step_var_y_mm2, "Variance of DY"),
     half("VAR_DZ", 38, "mm^2", &E::step_var_z_mm2, "Variance of DZ"),
@@ -242,7 +245,7 @@ constexpr auto kSlow = CanCadence::slow;
 constexpr std::array<CanFrameSpec, kCanIdsUsed> kContract{{
     {Kind::velocity, "VIS_VEL", 0, 0xA0, 8, false, kEvery, "Velocity of the vehicle", kVelocity},
     {Kind::attitude, "VIS_ATT", 1, 0xA1, 8, false, kEvery, "Attitude since start, order yaw pitch roll", kAttitude},
-    {Kind::step, "VIS_POS", 2, 0xA2, 8, false, kEvery, "Way since the estimate before", kStep},
+    {Kind::step, "VIS_POS", 2, 0xA2, 8, false, kEvery, "Way during INTERVAL", kStep},
     {Kind::timing, "VIS_TIME", 3, 0xA3, 8, false, kEvery, "Length of the step, declared latency", kTiming},
     {Kind::object, "VIS_OBJ", 4, 0xA4, 8, false, kEvery, "Nearest moving body: where", kObject},
     {Kind::object_rate, "VIS_OBJ_RATE", 5, 0xA5, 8, false, kEvery, "Nearest moving body: how sure", kObjectRate},

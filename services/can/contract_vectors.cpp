@@ -77,7 +77,7 @@ std::vector<ContractVector> contract_vectors() {
   third.sets_dropped = 3;
   CanEstimate lost = spoken(VisionState::lost, 0, 0.0795);
   lost.resets = 2;
-  CanEstimate fault = spoken(VisionState::camera_fault, 0, kUnknown);
+  CanEstimate fault = spoken(VisionState::camera_fault, 0, kCanUnknown);
   fault.resets = 2;
   return {{"tracking", 14, true, first},
           {"beyond the fields", 15, false, second},

@@ -48,7 +48,10 @@ TEST_P(Receiver, ReadsWhatTheEncoderWroteToTheResolutionOfTheContract) {
     // A velocity that belongs to the step, since FD carries the step only.
     const Eigen::Vector3d way(draw(1), draw(1), draw(1));
     const Eigen::Vector3d turn(draw(0.3), draw(0.3), draw(0.3));
-    const Eigen::Vector3d vel = so3_exp(turn).transpose() * way / e.interval_s;
+    Rigid3 T_prev_curr = Rigid3::Identity();
+    T_prev_curr.linear() = so3_exp(turn);
+    T_prev_curr.translation() = way;
+    const Eigen::Vector3d vel = se3_log(T_prev_curr).head<3>() / e.interval_s;
     e.step_x_m = way.x(), e.step_y_m = way.y(), e.step_z_m = way.z();
     e.turn_x_rad = turn.x(), e.turn_y_rad = turn.y(), e.turn_z_rad = turn.z();
     e.vel_x_mps = vel.x(), e.vel_y_mps = vel.y(), e.vel_z_mps = vel.z();
@@ -159,6 +162,22 @@ TEST_P(Receiver, OneLostSetIsForgivenButItsStepIsNot) {
   EXPECT_EQ(link.rx.counts.lost, 1U);
 }
 
+TEST_P(Receiver, TheStepAfterALostEstimateSpansMoreThanItsReceiverKnows) {
+  Link link(GetParam());
+  link.bring_up();
+  CanEstimate lost;
+  lost.state = VisionState::lost;
+  lost.quality_percent = 0;
+  lost.age_s = 0.1;
+  (void)link.send_next(lost);
+  (void)link.send_next(steady_estimate());
+  ASSERT_NE(link.latest(), nullptr);
+  EXPECT_FALSE(link.latest()->valid & PELORUS_CAN_STEP);
+  EXPECT_TRUE(link.latest()->valid & PELORUS_CAN_VELOCITY);
+  (void)link.send_next(steady_estimate());
+  EXPECT_TRUE(link.latest()->valid & PELORUS_CAN_STEP);
+}
+
 TEST_P(Receiver, AJumpOfTheCounterTakesTheLinkDown) {
   Link link(GetParam());
   link.bring_up();
@@ -217,7 +236,7 @@ TEST_P(Receiver, NumbersWithoutAnAgeAQualityOrAKnownStateAreNotVouchedFor) {
     Link link(GetParam());
     link.bring_up();
     CanEstimate e = steady_estimate();
-    if (fault == 0) e.age_s = kUnknown;
+    if (fault == 0) e.age_s = kCanUnknown;
     if (fault == 1) e.quality_percent = 0;
     if (fault == 2) e.state = static_cast<VisionState>(9);
     (void)link.send_next(e);
@@ -230,15 +249,15 @@ TEST_P(Receiver, EachInvalidFieldTakesOnlyItsOwnValueAway) {
   Link link(GetParam());
   link.bring_up();
   CanEstimate e = steady_estimate();
-  e.roll_rad = kUnknown;
+  e.roll_rad = kCanUnknown;
   (void)link.send_next(e, true);
   ASSERT_NE(link.latest(), nullptr);
   EXPECT_FALSE(link.latest()->valid & PELORUS_CAN_ATTITUDE);
   EXPECT_TRUE(std::isnan(link.latest()->pitch_rad));
   EXPECT_TRUE(link.latest()->valid & PELORUS_CAN_VELOCITY);
   e = steady_estimate();
-  e.object_range_m = kUnknown;
-  e.position_y_m = kUnknown;
+  e.object_range_m = kCanUnknown;
+  e.position_y_m = kCanUnknown;
   (void)link.send_next(e, true);
   EXPECT_FALSE(link.latest()->valid & (PELORUS_CAN_BODY | PELORUS_CAN_BODY_CLOSING | PELORUS_CAN_POSITION));
   EXPECT_TRUE(link.latest()->valid & PELORUS_CAN_ATTITUDE);

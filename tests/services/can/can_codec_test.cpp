@@ -101,14 +101,14 @@ TEST(CanCodec, AValueBeyondItsFieldIsInvalidAndNeverClipped) {
   EXPECT_EQ(raw_of(vx, -32.768), 0x8000U) << "the invalid code is not a velocity";
   EXPECT_EQ(raw_of(vx, 1e300), 0x8000U);
   EXPECT_EQ(raw_of(vx, std::numeric_limits<double>::infinity()), 0x8000U);
-  EXPECT_EQ(raw_of(vx, kUnknown), 0x8000U);
+  EXPECT_EQ(raw_of(vx, kCanUnknown), 0x8000U);
   EXPECT_TRUE(std::isnan(value_of(vx, 0x8000)));
 }
 
 TEST(CanCodec, AnAgeBeyondItsFieldIsTheLargestAndNoneIsInvalid) {
   const CanSignal& age = signal_named(CanFrameKind::quality, "AGE");
   EXPECT_DOUBLE_EQ(through_wire(age, 60.0), 3.2767);
-  EXPECT_TRUE(std::isnan(through_wire(age, kUnknown)));
+  EXPECT_TRUE(std::isnan(through_wire(age, kCanUnknown)));
 }
 
 TEST(CanCodec, ADeviationIsNeverUnderstatedAndOffByLessThanOneStep) {
@@ -120,7 +120,7 @@ TEST(CanCodec, ADeviationIsNeverUnderstatedAndOffByLessThanOneStep) {
     EXPECT_DOUBLE_EQ(through_wire(sigma, seen), seen) << "passing it on adds nothing";
   }
   EXPECT_EQ(raw_of(sigma, 1e9), 254U);
-  EXPECT_EQ(raw_of(sigma, kUnknown), 255U);
+  EXPECT_EQ(raw_of(sigma, kCanUnknown), 255U);
   EXPECT_EQ(raw_of(sigma, 0.0), 0U);
 }
 

@@ -30,37 +30,50 @@ Rigid3 body_at(const Eigen::Vector3d& p_start_body, double yaw_rad, double pitch
   return T_start_body;
 }
 
-// A vehicle whose body goes through given poses, seen by the camera as the pipeline reports it.
+// A vehicle whose body goes through given poses, seen by the camera as the service publishes it.
 class Dive {
  public:
-  explicit Dive(const Rigid3& T_body_cam) : T_body_cam_(T_body_cam) { result_.report.points_static = 200; }
+  explicit Dive(const Rigid3& T_body_cam) : T_body_cam_(T_body_cam) { now_.result.report.points_static = 200; }
 
-  FrameResult at(const Rigid3& T_start_body, double time_s) {
-    const Rigid3 T_world_cam_prev = result_.T_world_cam;
-    result_.T_world_cam = T_body_cam_.inverse() * T_start_body * T_body_cam_;
-    result_.T_curr_prev = result_.T_world_cam.inverse() * T_world_cam_prev;
-    result_.cov_T_curr_prev = 1e-8 * Matrix6d::Identity();
-    result_.cov_T_world_cam = 1e-4 * Matrix6d::Identity();
-    result_.capture_time = Timestamp{1'000'000'000 + static_cast<std::int64_t>(std::llround(time_s * 1e9))};
-    result_.state = VisionState::tracking;
-    result_.pose_valid = true;
-    result_.world_confidence = 0.9;
-    ++result_.seq;
-    return result_;
+  Publication at(const Rigid3& T_start_body, double time_s) {
+    FrameResult& result = now_.result;
+    const Rigid3 T_world_cam_prev = result.T_world_cam;
+    const Timestamp time_prev = result.capture_time;
+    result.T_world_cam = T_body_cam_.inverse() * T_start_body * T_body_cam_;
+    result.T_curr_prev = result.T_world_cam.inverse() * T_world_cam_prev;
+    result.cov_T_curr_prev = 1e-8 * Matrix6d::Identity();
+    result.cov_T_world_cam = 1e-4 * Matrix6d::Identity();
+    result.capture_time = Timestamp{1'000'000'000 + static_cast<std::int64_t>(std::llround(time_s * 1e9))};
+    result.state = VisionState::tracking;
+    result.pose_valid = true;
+    result.world_confidence = 0.9;
+    now_.step = any_ ? result.capture_time - time_prev : Duration{};
+    any_ = true;
+    return now_;
   }
   [[nodiscard]] Rigid3 to_world(const Rigid3& T_start_any) const { return T_body_cam_.inverse() * T_start_any; }
 
  private:
   Rigid3 T_body_cam_;
-  FrameResult result_;
+  Publication now_;
+  bool any_ = false;
 };
+
+PreviousPose pose_of(const Publication& p) {
+  return {true, p.result.capture_time, p.result.reset_counter, p.result.T_world_cam};
+}
+
+// As released at once.
+CanEstimate estimate(const Publication& now, const PreviousPose& previous, const Rigid3& T_body_cam) {
+  return estimate_of(now, previous, BodyFrames(T_body_cam), now.result.capture_time);
+}
 
 TEST(CanEstimate, DrivingForwardToStarboardAndDownIsPositiveWhateverTheMounting) {
   for (const Rigid3& T_body_cam : {Rigid3(Rigid3::Identity()), forward_mounting()}) {
     Dive dive(T_body_cam);
-    const FrameResult first = dive.at(body_at({0, 0, 0}, 0), 0);
-    const FrameResult second = dive.at(body_at({0.1, 0.02, 0.03}, 0), 0.1);
-    const CanEstimate e = estimate_of(second, remember(first), T_body_cam, second.capture_time);
+    const Publication first = dive.at(body_at({0, 0, 0}, 0), 0);
+    const Publication second = dive.at(body_at({0.1, 0.02, 0.03}, 0), 0.1);
+    const CanEstimate e = estimate(second, pose_of(first), T_body_cam);
     EXPECT_NEAR(e.vel_x_mps, 1.0, 1e-9);
     EXPECT_NEAR(e.vel_y_mps, 0.2, 1e-9);
     EXPECT_NEAR(e.vel_z_mps, 0.3, 1e-9);
@@ -73,8 +86,8 @@ TEST(CanEstimate, YawToStarboardPitchBowUpAndRollStarboardDownArePositive) {
   const Rigid3 T_body_cam = forward_mounting();
   Dive dive(T_body_cam);
   (void)dive.at(body_at({0, 0, 0}, 0), 0);
-  const FrameResult now = dive.at(body_at({0, 0, 0}, 30 * kDegree, 10 * kDegree, 5 * kDegree), 0.1);
-  const CanEstimate e = estimate_of(now, {}, T_body_cam, now.capture_time);
+  const Publication now = dive.at(body_at({0, 0, 0}, 30 * kDegree, 10 * kDegree, 5 * kDegree), 0.1);
+  const CanEstimate e = estimate(now, {}, T_body_cam);
   EXPECT_NEAR(e.yaw_rad, 30 * kDegree, 1e-9);
   EXPECT_NEAR(e.pitch_rad, 10 * kDegree, 1e-9);
   EXPECT_NEAR(e.roll_rad, 5 * kDegree, 1e-9);
@@ -87,33 +100,33 @@ TEST(CanEstimate, YawToStarboardPitchBowUpAndRollStarboardDownArePositive) {
 TEST(CanEstimate, TurningOnTheSpotMovesTheCameraButNotTheBody) {
   const Rigid3 T_body_cam = forward_mounting();
   Dive dive(T_body_cam);
-  const FrameResult first = dive.at(body_at({1, 2, 3}, 0.3), 0);
-  const FrameResult second = dive.at(body_at({1, 2, 3}, 0.4), 0.1);
-  const CanEstimate e = estimate_of(second, remember(first), T_body_cam, second.capture_time);
+  const Publication first = dive.at(body_at({1, 2, 3}, 0.3), 0);
+  const Publication second = dive.at(body_at({1, 2, 3}, 0.4), 0.1);
+  const CanEstimate e = estimate(second, pose_of(first), T_body_cam);
   EXPECT_NEAR(e.vel_x_mps, 0, 1e-9);
   EXPECT_NEAR(e.vel_y_mps, 0, 1e-9);
   EXPECT_NEAR(e.step_y_m, 0, 1e-9);
   EXPECT_NEAR(e.turn_z_rad, 0.1, 1e-9);
-  EXPECT_GT((second.T_world_cam.translation() - first.T_world_cam.translation()).norm(), 0.05);
+  EXPECT_GT((second.result.T_world_cam.translation() - first.result.T_world_cam.translation()).norm(), 0.05);
 }
 
 TEST(CanEstimate, StepsAndTurnsChainToThePose) {
   const Rigid3 T_body_cam = forward_mounting();
   Dive dive(T_body_cam);
   Rigid3 T_start_body = Rigid3::Identity();
-  PreviousResult previous;
+  PreviousPose previous;
   Rigid3 T_chained = Rigid3::Identity();
   CanEstimate e;
   for (int k = 0; k < 40; ++k) {
-    const FrameResult result = dive.at(T_start_body, 0.05 * k);
-    e = estimate_of(result, previous, T_body_cam, result.capture_time);
+    const Publication result = dive.at(T_start_body, 0.05 * k);
+    e = estimate(result, previous, T_body_cam);
     if (k > 0) {
       Rigid3 T_prev_curr = Rigid3::Identity();
       T_prev_curr.linear() = so3_exp({e.turn_x_rad, e.turn_y_rad, e.turn_z_rad});
       T_prev_curr.translation() = Eigen::Vector3d(e.step_x_m, e.step_y_m, e.step_z_m);
       T_chained = T_chained * T_prev_curr;
     }
-    previous = remember(result);
+    previous = pose_of(result);
     T_start_body = T_start_body * body_at({0.05, 0.01, -0.02}, 0.03, -0.02, 0.01);
   }
   EXPECT_NEAR(T_chained.translation().x(), e.position_x_m, 1e-6);
@@ -124,8 +137,8 @@ TEST(CanEstimate, StepsAndTurnsChainToThePose) {
 
 TEST(CanEstimate, TheFirstFrameHasAPoseButNoMotion) {
   Dive dive(forward_mounting());
-  const FrameResult first = dive.at(Rigid3::Identity(), 0);
-  const CanEstimate e = estimate_of(first, {}, forward_mounting(), first.capture_time);
+  const Publication first = dive.at(Rigid3::Identity(), 0);
+  const CanEstimate e = estimate(first, {}, forward_mounting());
   EXPECT_TRUE(std::isnan(e.vel_x_mps));
   EXPECT_TRUE(std::isnan(e.step_x_m));
   EXPECT_TRUE(std::isnan(e.sigma_vel_mps));
@@ -134,13 +147,13 @@ TEST(CanEstimate, TheFirstFrameHasAPoseButNoMotion) {
 
 TEST(CanEstimate, ALostSystemSendsNoNumbersButAgeAndResets) {
   Dive dive(forward_mounting());
-  const FrameResult first = dive.at(Rigid3::Identity(), 0);
-  FrameResult lost = dive.at(body_at({1, 0, 0}, 0), 0.05);
-  lost.state = VisionState::lost;
-  lost.pose_valid = false;
-  lost.reset_counter = 3;
-  const CanEstimate e =
-      estimate_of(lost, remember(first), forward_mounting(), lost.capture_time + std::chrono::milliseconds(70));
+  const Publication first = dive.at(Rigid3::Identity(), 0);
+  Publication lost = dive.at(body_at({1, 0, 0}, 0), 0.05);
+  lost.result.state = VisionState::lost;
+  lost.result.pose_valid = false;
+  lost.result.reset_counter = 3;
+  const CanEstimate e = estimate_of(lost, pose_of(first), BodyFrames(forward_mounting()),
+                                    lost.result.capture_time + std::chrono::milliseconds(70));
   EXPECT_TRUE(std::isnan(e.vel_x_mps));
   EXPECT_TRUE(std::isnan(e.position_x_m));
   EXPECT_TRUE(std::isnan(e.roll_rad));
@@ -153,45 +166,33 @@ TEST(CanEstimate, ALostSystemSendsNoNumbersButAgeAndResets) {
 TEST(CanEstimate, ASkippedResultIsSpannedByThePosesAndItsVarianceGrows) {
   const Rigid3 T_body_cam = forward_mounting();
   Dive dive(T_body_cam);
-  const FrameResult first = dive.at(Rigid3::Identity(), 0);
-  const FrameResult second = dive.at(body_at({0.1, 0, 0}, 0), 0.1);
-  const FrameResult third = dive.at(body_at({0.3, 0, 0}, 0), 0.2);
-  const CanEstimate next = estimate_of(second, remember(first), T_body_cam, second.capture_time);
-  const CanEstimate spanned = estimate_of(third, remember(first), T_body_cam, third.capture_time);
+  const Publication first = dive.at(Rigid3::Identity(), 0);
+  (void)dive.at(body_at({0.1, 0, 0}, 0), 0.1);
+  const Publication third = dive.at(body_at({0.3, 0, 0}, 0), 0.2);
+  const CanEstimate spanned = estimate(third, pose_of(first), T_body_cam);
   EXPECT_NEAR(spanned.step_x_m, 0.3, 1e-9);
   EXPECT_NEAR(spanned.interval_s, 0.2, 1e-9);
-  EXPECT_NEAR(spanned.vel_x_mps, 1.5, 1e-9);
-  EXPECT_GT(spanned.step_var_y_mm2, 1.9 * next.step_var_y_mm2);
-  PreviousResult before_reset = remember(first);
+  EXPECT_NEAR(spanned.vel_x_mps, 2.0, 1e-9) << "of the last frame interval";
+  PreviousPose before_reset = pose_of(first);
   before_reset.reset_counter = 7;
-  EXPECT_TRUE(std::isnan(estimate_of(third, before_reset, T_body_cam, third.capture_time).step_x_m))
-      << "poses before and after a reset have no difference";
-}
-
-TEST(CanEstimate, AFrameMissedByTheCameraIsPartOfTheStep) {
-  const Rigid3 T_body_cam = forward_mounting();
-  Dive dive(T_body_cam);
-  const FrameResult first = dive.at(Rigid3::Identity(), 0);
-  FrameResult second = dive.at(body_at({0.2, 0, 0}, 0), 0.2);
-  ++second.seq;
-  second.report.frames_missed = 1;
-  const CanEstimate e = estimate_of(second, remember(first), T_body_cam, second.capture_time);
-  EXPECT_NEAR(e.vel_x_mps, 1.0, 1e-9);
-  EXPECT_NEAR(e.interval_s, 0.2, 1e-9);
+  const CanEstimate alone = estimate(third, before_reset, T_body_cam);
+  EXPECT_NEAR(alone.step_x_m, 0.2, 1e-9) << "poses before and after a reset have no difference";
+  EXPECT_NEAR(alone.interval_s, 0.1, 1e-9);
+  EXPECT_GT(spanned.step_var_x_mm2, 1.8 * alone.step_var_x_mm2);
 }
 
 // The covariance of the camera's step, carried to the body origin, against many drawn steps.
 TEST(CanEstimate, DeviationOfVelocityMatchesDrawnSteps) {
   const Rigid3 T_body_cam = forward_mounting();
   Dive dive(T_body_cam);
-  const FrameResult first = dive.at(Rigid3::Identity(), 0);
-  FrameResult second = dive.at(body_at({0.05, 0, 0}, 0.01), 0.1);
+  const Publication first = dive.at(Rigid3::Identity(), 0);
+  Publication second = dive.at(body_at({0.05, 0, 0}, 0.01), 0.1);
   const double sigma_m = 1e-3;
   const double sigma_rad = 2e-3;
-  second.cov_T_curr_prev.setZero();
-  second.cov_T_curr_prev.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
+  second.result.cov_T_curr_prev.setZero();
+  second.result.cov_T_curr_prev.diagonal() << Eigen::Vector3d::Constant(sigma_m * sigma_m),
       Eigen::Vector3d::Constant(sigma_rad * sigma_rad);
-  const CanEstimate truth = estimate_of(second, remember(first), T_body_cam, second.capture_time);
+  const CanEstimate truth = estimate(second, pose_of(first), T_body_cam);
   std::srand(7);
   Eigen::Vector3d sum_mm2 = Eigen::Vector3d::Zero();
   constexpr int kDraws = 4000;
@@ -201,9 +202,9 @@ TEST(CanEstimate, DeviationOfVelocityMatchesDrawnSteps) {
     for (int i = 0; i < 12; ++i) xi += 0.5 * Vector6d::Random();
     xi.head<3>() *= sigma_m;
     xi.tail<3>() *= sigma_rad;
-    FrameResult drawn = second;
-    drawn.T_curr_prev = se3_exp(xi) * second.T_curr_prev;
-    const CanEstimate e = estimate_of(drawn, remember(first), T_body_cam, drawn.capture_time);
+    Publication drawn = second;
+    drawn.result.T_curr_prev = se3_exp(xi) * second.result.T_curr_prev;
+    const CanEstimate e = estimate(drawn, pose_of(first), T_body_cam);
     const Eigen::Vector3d d(e.step_x_m - truth.step_x_m, e.step_y_m - truth.step_y_m, e.step_z_m - truth.step_z_m);
     sum_mm2 += 1e6 * d.cwiseAbs2();
   }
@@ -228,17 +229,17 @@ ObjectState body_seen(std::int32_t id, const Eigen::Vector3d& p_world, const Eig
 TEST(CanEstimate, TheNearestBodyIsToldInBearingElevationRangeAndClosingSpeed) {
   const Rigid3 T_body_cam = forward_mounting();
   Dive dive(T_body_cam);
-  const FrameResult first = dive.at(Rigid3::Identity(), 0);
-  FrameResult now = dive.at(body_at({0.1, 0, 0}, 0), 0.1);
+  const Publication first = dive.at(Rigid3::Identity(), 0);
+  Publication now = dive.at(body_at({0.1, 0, 0}, 0), 0.1);
   const Rigid3 T_world_start = dive.to_world(Rigid3::Identity());
   const Eigen::Vector3d p_body(4, 3, -1);  // ahead, to starboard, above
   const Eigen::Vector3d p_start = p_body + Eigen::Vector3d(0.1, 0, 0);
-  now.objects[0] = body_seen(300, T_world_start * Eigen::Vector3d(20, 0, 0), Eigen::Vector3d::Zero());
-  now.objects[1] = body_seen(256, T_world_start * p_start, Eigen::Vector3d::Zero());
-  now.objects[2] = body_seen(3, T_world_start * Eigen::Vector3d(1, 0, 0), Eigen::Vector3d::Zero());
-  now.objects[2].phase = ObjectPhase::tentative;
-  now.objects_size = 3;
-  const CanEstimate e = estimate_of(now, remember(first), T_body_cam, now.capture_time);
+  now.result.objects[0] = body_seen(300, T_world_start * Eigen::Vector3d(20, 0, 0), Eigen::Vector3d::Zero());
+  now.result.objects[1] = body_seen(256, T_world_start * p_start, Eigen::Vector3d::Zero());
+  now.result.objects[2] = body_seen(3, T_world_start * Eigen::Vector3d(1, 0, 0), Eigen::Vector3d::Zero());
+  now.result.objects[2].phase = ObjectPhase::tentative;
+  now.result.objects_size = 3;
+  const CanEstimate e = estimate(now, pose_of(first), T_body_cam);
   EXPECT_DOUBLE_EQ(e.bodies, 2) << "the tentative one is no body yet";
   EXPECT_NEAR(e.object_range_m, p_body.norm(), 1e-9);
   EXPECT_NEAR(e.object_bearing_rad, std::atan2(3, 4), 1e-9);
@@ -254,32 +255,43 @@ TEST(CanEstimate, TheNearestBodyIsToldInBearingElevationRangeAndClosingSpeed) {
 TEST(CanEstimate, ABodyThatMovesAlongKeepsItsRange) {
   const Rigid3 T_body_cam = forward_mounting();
   Dive dive(T_body_cam);
-  const FrameResult first = dive.at(Rigid3::Identity(), 0);
-  FrameResult now = dive.at(body_at({0.1, 0, 0}, 0), 0.1);
+  const Publication first = dive.at(Rigid3::Identity(), 0);
+  Publication now = dive.at(body_at({0.1, 0, 0}, 0), 0.1);
   const Rigid3 T_world_start = dive.to_world(Rigid3::Identity());
-  now.objects[0] =
+  now.result.objects[0] =
       body_seen(1, T_world_start * Eigen::Vector3d(5, 1, 0), T_world_start.linear() * Eigen::Vector3d(0.1, 0, 0));
-  now.objects_size = 1;
-  EXPECT_NEAR(estimate_of(now, remember(first), T_body_cam, now.capture_time).object_closing_mps, 0, 1e-9);
+  now.result.objects_size = 1;
+  EXPECT_NEAR(estimate(now, pose_of(first), T_body_cam).object_closing_mps, 0, 1e-9);
 }
 
-TEST(CanEstimate, QualityIsZeroOnlyWithoutAPoseAndAtMostHalfWhenDegraded) {
+TEST(CanEstimate, QualityIsZeroOnlyWithoutAPose) {
   Dive dive(forward_mounting());
-  FrameResult result = dive.at(Rigid3::Identity(), 0);
-  EXPECT_DOUBLE_EQ(quality_percent_of(result), 100);
-  result.report.points_static = 0;
-  EXPECT_DOUBLE_EQ(quality_percent_of(result), 1);
-  result.report.points_static = 500;
-  result.state = VisionState::degraded;
-  EXPECT_DOUBLE_EQ(quality_percent_of(result), 50);
-  result.pose_valid = false;
-  EXPECT_DOUBLE_EQ(quality_percent_of(result), 0);
+  Publication p = dive.at(Rigid3::Identity(), 0);
+  EXPECT_DOUBLE_EQ(estimate(p, {}, forward_mounting()).quality_percent, 100);
+  p.result.report.points_static = 0;
+  EXPECT_DOUBLE_EQ(estimate(p, {}, forward_mounting()).quality_percent, 1);
+  p.result.pose_valid = false;
+  EXPECT_DOUBLE_EQ(estimate(p, {}, forward_mounting()).quality_percent, 0);
+}
+
+// VIS_ODOM and CAN are read side by side: one number for one thing.
+TEST(CanEstimate, VelocityIsTheOneThatLcmSends) {
+  const Rigid3 T_body_cam = forward_mounting();
+  Dive dive(T_body_cam);
+  (void)dive.at(Rigid3::Identity(), 0);
+  const Publication now = dive.at(body_at({0.1, 0.05, -0.02}, 0.2, 0.1, -0.1), 0.1);
+  const CanEstimate e = estimate(now, {}, T_body_cam);
+  const BodyTwist lcm = body_twist(now.result, BodyFrames(T_body_cam), now.step);
+  EXPECT_DOUBLE_EQ(e.vel_x_mps, lcm.twist[0]);
+  EXPECT_DOUBLE_EQ(e.vel_y_mps, lcm.twist[1]);
+  EXPECT_DOUBLE_EQ(e.vel_z_mps, lcm.twist[2]);
 }
 
 TEST(CanEstimate, AMeasurementFromTheFutureHasNoAge) {
   Dive dive(forward_mounting());
-  const FrameResult result = dive.at(Rigid3::Identity(), 1);
-  EXPECT_TRUE(std::isnan(estimate_of(result, {}, forward_mounting(), Timestamp{result.capture_time.ns - 1}).age_s));
+  const Publication result = dive.at(Rigid3::Identity(), 1);
+  EXPECT_TRUE(std::isnan(
+      estimate_of(result, {}, BodyFrames(forward_mounting()), Timestamp{result.result.capture_time.ns - 1}).age_s));
 }
 
 }  // namespace
