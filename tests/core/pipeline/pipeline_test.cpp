@@ -32,6 +32,35 @@ StereoImages plane(int frame) {
           })};
 }
 
+// In front of it, at 2 m, a board of its own texture that rests up to `starts` and then moves to the right with
+// `mm_per_frame2` of acceleration, up to 8 mm per frame.
+struct Board {
+  int starts = 0;
+  double mm_per_frame2 = 8;
+  double offset_m = 0;
+
+  [[nodiscard]] double place_m(int frame) const {
+    double place_mm = 1000 * offset_m;
+    for (int k = starts; k < frame; ++k) place_mm += std::min(8.0, mm_per_frame2 * (k - starts + 1));
+    return place_mm / 1000;
+  }
+  [[nodiscard]] double shift_px(int frame) const { return kRig.f_px * (0.03 * frame - place_m(frame)) / 2.0; }
+};
+
+StereoImages plane_with_board(int frame, const Board& board) {
+  const test::AnalyticTexture front(12);
+  const auto view = [&](double disparity_of_plane, double disparity_of_board, unsigned seed) {
+    return test::render(front, kWidth, kHeight, 1.0, seed, [&](double u, double v) {
+      const double u_board = u + board.shift_px(frame) + disparity_of_board;
+      // The board spans 110 by 90 px of its own texture; elsewhere the plane shows a far part of the same texture.
+      if (std::abs(u_board - 190) < 55 && std::abs(v - 120) < 45) return test::TexturePlace{u_board, v};
+      return test::TexturePlace{u + kFlow_px * frame + disparity_of_plane + 5000, v + 3000};
+    });
+  };
+  const auto seed = static_cast<unsigned>(10 * frame);
+  return {view(0, 0, seed + 1), view(kDisparity_px, kRig.f_px * kRig.baseline_m / 2.0, seed + 2)};
+}
+
 StereoImages grey() {
   StereoImages images{Image(kWidth, kHeight), Image(kWidth, kHeight)};
   for (Image* image : {&images.left, &images.right}) {
@@ -80,6 +109,43 @@ TEST(Pipeline, FollowsTheCameraPastAPlaneAtRest) {
   EXPECT_EQ(result.objects_size, 0);
   EXPECT_EQ(result.reset_counter, 0);
   EXPECT_GT(result.report.points_static, 50);
+}
+
+TEST(Pipeline, AMovingBoardIsOneObjectWithItsMotion) {
+  Pipeline pipeline({}, kRig);
+  FrameResult result;
+  for (int frame = 0; frame < 10; ++frame) result = step(pipeline, frame, plane_with_board(frame, {}));
+  ASSERT_EQ(result.objects_size, 1);
+  const ObjectState& object = result.objects.front();
+  EXPECT_EQ(object.phase, ObjectPhase::confirmed);
+  EXPECT_EQ(object.id, BodyId{1});
+  const Eigen::Vector3d p_world = object.centroid_world;
+  EXPECT_LT((object.M_world * p_world - p_world - Eigen::Vector3d(0.008, 0, 0)).norm(), 0.001);
+  EXPECT_NEAR(p_world.z(), 2.0, 0.02);
+  EXPECT_LT((result.T_world_cam.translation() - Eigen::Vector3d(0.27, 0, 0)).norm(), 0.01);
+}
+
+TEST(Pipeline, AKnownBodyThatSetsOffSlowlyDoesNotDragTheCameraAlong) {
+  Pipeline pipeline({}, kRig);
+  const Board moves_rests_and_sets_off{14, 0.15};
+  FrameResult before;
+  for (int frame = 0; frame < 30; ++frame) {
+    // Known from its first eight frames; then it rests.
+    const int shown = std::min(frame, 8);
+    StereoImages images = frame <= 8 ? plane_with_board(frame, {}) : StereoImages{};
+    if (frame > 8) {
+      Board board = moves_rests_and_sets_off;
+      board.offset_m = Board{}.place_m(shown);
+      images = plane_with_board(frame, board);
+    }
+    const FrameResult result = step(pipeline, frame, images);
+    ASSERT_TRUE(result.pose_valid);
+    if (frame > 0) {
+      const Rigid3 step_cam = before.T_world_cam.inverse() * result.T_world_cam;
+      EXPECT_LT((step_cam.translation() - Eigen::Vector3d(0.03, 0, 0)).norm(), 0.0008) << "frame " << frame;
+    }
+    before = result;
+  }
 }
 
 TEST(Pipeline, AGreyFrameIsSaidToBeLostAndTheNextGoodOnesGoOn) {
