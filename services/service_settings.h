@@ -19,6 +19,23 @@ struct CaptureWatchConfig {
   double time_jump_ms = 50;       // time stamps that leave the clock by more are a jump
 };
 
+// Where the rectified left camera sits in the vehicle: x forward, y starboard, z down.
+struct MountingConfig {
+  bool given = false;  // false: as the calibration says; if it does not, at the body's origin, looking ahead
+  double x_m = 0;
+  double y_m = 0;
+  double z_m = 0;
+  double roll_deg = 0;   // of a camera that looked ahead, turned by yaw, then pitch, then roll
+  double pitch_deg = 0;  // -90: looking straight down
+  double yaw_deg = 0;
+};
+
+// What the program asks of the operating system.
+struct ProcessConfig {
+  bool realtime = true;     // scheduling class of capture and vision; refused: goes on without
+  bool lock_memory = true;  // no page of the program is swapped out; refused: goes on without
+};
+
 struct LcmConfig {
   bool enabled = true;
   std::string url = "udpm://239.255.76.67:7667?ttl=0";  // ttl=0: this computer only

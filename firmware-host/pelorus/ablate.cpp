@@ -14,10 +14,10 @@
 #include "firmware-host/pelorus/replay_dive.h"
 #include "firmware-host/pelorus/replay_interrupt.h"
 #include "firmware-host/pelorus/replay_run.h"
-#include "firmware-host/pelorus/replay_source.h"
 #include "firmware-host/pelorus/result_files.h"
 #include "firmware-host/runtime/config_fields.h"
 #include "firmware-host/runtime/config_loader.h"
+#include "firmware-host/runtime/replay_source.h"
 
 namespace pelorus {
 namespace {

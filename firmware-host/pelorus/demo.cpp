@@ -10,8 +10,8 @@
 #include "firmware-host/pelorus/replay_dive.h"
 #include "firmware-host/pelorus/replay_interrupt.h"
 #include "firmware-host/pelorus/replay_run.h"
-#include "firmware-host/pelorus/replay_source.h"
 #include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/runtime/replay_source.h"
 
 namespace pelorus {
 namespace {

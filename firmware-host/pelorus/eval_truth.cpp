@@ -6,7 +6,7 @@
 #include "drivers/replay/euroc.h"
 #include "drivers/replay/kitti.h"
 #include "firmware-host/pelorus/eval_truth_layouts.h"
-#include "firmware-host/pelorus/replay_source.h"
+#include "firmware-host/runtime/replay_source.h"
 
 namespace pelorus {
 namespace {

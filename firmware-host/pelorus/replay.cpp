@@ -9,9 +9,9 @@
 #include "firmware-host/pelorus/progress_bar.h"
 #include "firmware-host/pelorus/replay_interrupt.h"
 #include "firmware-host/pelorus/replay_run.h"
-#include "firmware-host/pelorus/replay_source.h"
 #include "firmware-host/pelorus/result_files.h"
 #include "firmware-host/runtime/config_loader.h"
+#include "firmware-host/runtime/replay_source.h"
 
 namespace pelorus {
 namespace {

@@ -5,7 +5,7 @@
 #include "firmware-host/pelorus/asl_writer.h"
 #include "firmware-host/pelorus/progress_bar.h"
 #include "firmware-host/pelorus/replay_interrupt.h"
-#include "firmware-host/pelorus/scene_lookup.h"
+#include "firmware-host/runtime/scene_lookup.h"
 
 namespace pelorus {
 

@@ -9,7 +9,7 @@
 #include "drivers/synthetic/synthetic_source.h"
 #include "firmware-host/pelorus/asl_writer.h"
 #include "firmware-host/pelorus/progress_bar.h"
-#include "firmware-host/pelorus/scene_lookup.h"
+#include "firmware-host/runtime/scene_lookup.h"
 
 namespace pelorus {
 namespace {

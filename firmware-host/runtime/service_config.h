@@ -24,8 +24,10 @@ struct ServiceConfig {
   SourceConfig source;
   CameraConfig camera;
   TimingConfig timing;
+  MountingConfig mounting;
   CaptureWatchConfig capture;
   LcmConfig lcm;
+  ProcessConfig process;
   PipelineConfig pipeline;
 };
 

@@ -53,6 +53,23 @@ void list(FieldList& f, CaptureWatchConfig& c) {
   f.add("time_jump_ms", c.time_jump_ms, 1, 10000);
 }
 
+void list(FieldList& f, MountingConfig& c) {
+  f.section("mounting");
+  f.add("given", c.given);
+  f.add("x_m", c.x_m, -100, 100);
+  f.add("y_m", c.y_m, -100, 100);
+  f.add("z_m", c.z_m, -100, 100);
+  f.add("roll_deg", c.roll_deg, -180, 180);
+  f.add("pitch_deg", c.pitch_deg, -180, 180);
+  f.add("yaw_deg", c.yaw_deg, -180, 180);
+}
+
+void list(FieldList& f, ProcessConfig& c) {
+  f.section("process");
+  f.add("realtime", c.realtime);
+  f.add("lock_memory", c.lock_memory);
+}
+
 void list(FieldList& f, LcmConfig& c) {
   f.section("lcm");
   f.add("enabled", c.enabled);
@@ -70,8 +87,10 @@ std::vector<ConfigField> service_fields(ServiceConfig& config) {
   list(fields, config.source);
   list(fields, config.camera);
   list(fields, config.timing);
+  list(fields, config.mounting);
   list(fields, config.capture);
   list(fields, config.lcm);
+  list(fields, config.process);
   return fields.take();
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware-host/pelorus/replay_source.h"
+#include "firmware-host/runtime/replay_source.h"
 #include "tests/drivers/replay/recording_fixture.h"
 
 namespace pelorus {

@@ -167,6 +167,8 @@ TEST(ServiceFields, HoldEveryMemberOfEveryStruct) {
       {"timing", member_count<TimingConfig>()},
       {"capture", member_count<CaptureWatchConfig>()},
       {"lcm", member_count<LcmConfig>()},
+      {"mounting", member_count<MountingConfig>()},
+      {"process", member_count<ProcessConfig>()},
   };
   ServiceConfig defaults;
   std::map<std::string_view, std::size_t> listed;

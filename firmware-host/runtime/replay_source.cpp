@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/replay_source.h"
+#include "firmware-host/runtime/replay_source.h"
 
 #include <filesystem>
 #include <optional>
@@ -6,8 +6,8 @@
 #include "drivers/replay/dataset.h"
 #include "drivers/synthetic/scene_file.h"
 #include "drivers/synthetic/synthetic_source.h"
-#include "firmware-host/pelorus/scene_lookup.h"
 #include "firmware-host/runtime/calibration.h"
+#include "firmware-host/runtime/scene_lookup.h"
 
 namespace pelorus {
 namespace {

@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/scene_lookup.h"
+#include "firmware-host/runtime/scene_lookup.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -1,0 +1,225 @@
+#include "firmware-host/pelorusd/app.h"
+
+#include <signal.h>
+
+#include <array>
+#include <cstdio>
+#include <optional>
+#include <thread>
+
+#include "firmware-host/pelorusd/health_gather.h"
+#include "firmware-host/pelorusd/progress_watch.h"
+#include "firmware-host/pelorusd/service_threads.h"
+#include "firmware-host/runtime/service_manager.h"
+#include "services/health.h"
+#include "services/host_facts.h"
+
+namespace pelorus {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr auto kTick = std::chrono::milliseconds(50);
+constexpr auto kHealthPeriod = std::chrono::seconds(1);
+constexpr auto kLongestStandstill = std::chrono::milliseconds(2000);
+
+sigset_t handled_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP}) sigaddset(&signals, signal);
+  return signals;
+}
+
+std::string state_text(const ReleaseSample& sample) {
+  std::string text = to_text(sample.state);
+  if (sample.reason != StateReason::none) text += std::string(": ") + to_text(sample.reason);
+  return text;
+}
+
+LogLevel level_of(VisionState state) {
+  const bool good = state == VisionState::tracking || state == VisionState::init || state == VisionState::standby;
+  return good ? LogLevel::notice : LogLevel::warning;
+}
+
+}  // namespace
+
+void block_signals() {
+  const sigset_t signals = handled_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  ::signal(SIGPIPE, SIG_IGN);
+}
+
+struct App::Parts {
+  explicit Parts(LogSink& l) : log(l) {}
+
+  LogSink& log;
+  std::unique_ptr<ServiceThreads> service;
+  ServiceManager manager;
+  Health health;
+  HostFacts host{""};
+  ProgressWatch progress{kLongestStandstill};
+  Timestamp started;
+  std::uint64_t reports = 0;
+  Clock::time_point next_health;
+  Clock::time_point next_feed;
+  bool ready = false;
+  std::string state;
+  std::string logged_state;
+  int state_changes = 0;  // since the last line
+  Clock::time_point next_state_line;
+  std::vector<std::string> logged_problems;
+  bool logged_stuck = false;
+};
+
+App::App(LogSink& log) : parts_(std::make_unique<Parts>(log)) {}
+App::~App() = default;
+
+Result<std::unique_ptr<App>> App::create(const ServiceConfig& config, LogSink& log) {
+  auto service = ServiceThreads::start(config, log);
+  if (!service) return service.error();
+  std::unique_ptr<App> app(new App(log));
+  app->parts_->service = std::move(service.value());
+  app->parts_->started = app->parts_->service->clock.now();
+  return app;
+}
+
+int App::run() {
+  Parts& p = *parts_;
+  p.next_health = Clock::now() + kHealthPeriod;
+  p.next_feed = Clock::now();
+  while (!wait_for_signal()) {
+    tick();
+    if (!p.service->head->exhausted()) continue;
+    p.log.line(LogLevel::notice, "the recording is at its end");
+    p.service->vision.reset();
+    std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(p.service->config.timing.latency_ms + 50));
+    tick();
+    break;
+  }
+  p.manager.notify("STOPPING=1\nSTATUS=stopping");
+  p.service->stop();
+  take_samples();
+  std::array<char, 96> line{};
+  std::snprintf(line.data(), line.size(), "stopped after %llu results",
+                static_cast<unsigned long long>(p.health.results()));
+  p.log.line(LogLevel::notice, line.data());
+  return 0;
+}
+
+// True: told to stop.
+bool App::wait_for_signal() {
+  const sigset_t signals = handled_signals();
+  const timespec tick_time{0, std::chrono::nanoseconds(kTick).count()};
+  const int signal = ::sigtimedwait(&signals, nullptr, &tick_time);
+  if (signal == SIGHUP) {
+    parts_->log.line(LogLevel::notice, "nothing is reloaded while running: restart to apply changed settings");
+  }
+  return signal == SIGTERM || signal == SIGINT;
+}
+
+void App::tick() {
+  Parts& p = *parts_;
+  take_samples();
+  log_cameras();
+  const Clock::time_point now = Clock::now();
+  if (now >= p.next_health) {
+    p.next_health = std::max(p.next_health + kHealthPeriod, now);
+    report_health();
+  }
+  feed_watchdog();
+}
+
+void App::take_samples() {
+  Parts& p = *parts_;
+  while (const std::optional<ReleaseSample> sample = p.service->desk.samples.try_pop()) {
+    p.health.add(*sample);
+    const std::string state = state_text(*sample);
+    p.state_changes += state == p.state ? 0 : 1;
+    p.state = state;
+  }
+  log_state();
+  if (p.ready || p.health.results() == 0) return;
+  p.ready = true;
+  p.manager.notify("READY=1\nSTATUS=" + p.state);
+  p.log.line(LogLevel::notice, "ready");
+}
+
+// Flicker within a second is one line, which says so; a state that lasts is always told.
+void App::log_state() {
+  Parts& p = *parts_;
+  const Clock::time_point now = Clock::now();
+  if (p.state == p.logged_state || now < p.next_state_line) return;
+  const std::string flicker = p.state_changes > 1 ? " (" + std::to_string(p.state_changes) + " changes)" : "";
+  p.log.line(level_of(p.health.state()), p.state + flicker);
+  p.logged_state = p.state;
+  p.state_changes = 0;
+  p.next_state_line = now + std::chrono::seconds(1);
+}
+
+void App::log_cameras() {
+  Parts& p = *parts_;
+  const std::vector<CaptureStatus> cameras = p.service->head->status();
+  p.logged_problems.resize(cameras.size());
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const std::string problem = cameras[i].state == CaptureState::lost ? cameras[i].last_problem : "";
+    if (problem == p.logged_problems[i]) continue;
+    if (!problem.empty()) p.log.limited(LogLevel::warning, "camera", problem, p.service->clock.now());
+    if (problem.empty()) p.log.limited(LogLevel::notice, "camera back", cameras[i].description, p.service->clock.now());
+    p.logged_problems[i] = problem;
+  }
+}
+
+void App::report_health() {
+  Parts& p = *parts_;
+  HealthReport& report = p.service->desk.health.draft();
+  report = HealthReport{};
+  const Timestamp now = p.service->clock.now();
+  p.health.report(now, report);
+  report.seq = ++p.reports;
+  report.uptime_s = seconds(now - p.started);
+  gather_capture(p.service->head->status(), p.service->head->sync().statistics(), report);
+  if (p.service->vision) gather_vision(p.service->vision->status(), report);
+  report.counters.results_dropped = p.service->desk.results.dropped();
+  if (p.service->lcm) {
+    report.counters.lcm_errors = p.service->lcm->link().errors();
+    report.counters.lcm_reconnects = p.service->lcm->link().reconnects();
+  }
+  report.counters.previews_skipped = p.service->preview->skipped();
+  report.host = p.host.read();
+  report.version = PELORUS_VERSION;
+  report.recorder_text = "off";
+  report.can_text = "off";
+  report.config_hash = p.service->config_fingerprint;
+  report.calibration_hash = p.service->calibration_fingerprint;
+  std::array<char, 160> status{};
+  std::snprintf(status.data(), status.size(), "STATUS=%s%s%s, %.1f Hz, latency %.1f ms", to_text(report.state),
+                report.reason == StateReason::none ? "" : ": ", to_text(report.reason), report.timing.results_rate_hz,
+                report.timing.latency_p50_ms);
+  p.manager.notify(status.data());
+  if (p.service->lcm && !p.service->lcm->link().is_open()) {
+    p.log.limited(LogLevel::warning, "lcm", "LCM cannot be reached at " + p.service->config.lcm.url, now);
+  }
+  p.service->desk.health.post();
+  p.service->desk.wake.ring();
+}
+
+// Fed only while every part moves: a service that hangs is better killed and started anew.
+void App::feed_watchdog() {
+  Parts& p = *parts_;
+  const Clock::time_point now = Clock::now();
+  if (p.service->vision) p.progress.look("vision", p.service->vision->status().turns, false, now);
+  p.progress.look("publishing", p.service->publishing->turns(), false, now);
+  const std::vector<CaptureStatus> cameras = p.service->head->status();
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    const CameraStatistics& c = cameras[i].camera;
+    const bool searching = cameras[i].state != CaptureState::streaming && cameras[i].state != CaptureState::silent;
+    p.progress.look("camera " + std::to_string(i), c.frames + c.timeouts + c.incomplete, searching, now);
+  }
+  const std::string stuck = p.service->vision ? p.progress.stuck(now) : "";
+  if (!stuck.empty() && !p.logged_stuck) p.log.line(LogLevel::error, stuck + " stands still");
+  p.logged_stuck = !stuck.empty();
+  if (!p.manager.watchdog() || !stuck.empty() || now < p.next_feed) return;
+  p.next_feed = now + *p.manager.watchdog() / 4;
+  p.manager.notify("WATCHDOG=1");
+}
+
+}  // namespace pelorus

@@ -1,0 +1,92 @@
+// pelorusd: the service. Reads its configuration, runs until it is told to stop, explains on stderr what keeps it from
+// starting. Exit codes: docs/service.md.
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "firmware-host/pelorusd/app.h"
+#include "firmware-host/runtime/config_loader.h"
+#include "firmware-host/runtime/settings_hash.h"
+
+namespace {
+
+using pelorus::Error;
+using pelorus::ErrorCode;
+
+struct Arguments {
+  std::vector<std::string> configs;
+  bool check_config = false;
+};
+
+// The settings of all files, each on top of those before it. The problems of all files are told at once.
+pelorus::Result<pelorus::ServiceConfig> load(const std::vector<std::string>& files) {
+  pelorus::ServiceConfig config;
+  std::string problems;
+  ErrorCode code = ErrorCode::bad_configuration;
+  for (const std::string& file : files) {
+    const pelorus::Result<> applied = pelorus::apply_config_file(file, config);
+    if (applied) continue;
+    problems += (problems.empty() ? "" : "\n") + applied.error().message();
+    code = applied.error().code;
+  }
+  if (problems.empty() && config.source.path.empty()) {
+    problems = files.back() + ": source.path is not given (write where the pairs come from)";
+  }
+  if (!problems.empty()) return Error{code, "configuration", problems, ""};
+  return config;
+}
+
+int check(const pelorus::ServiceConfig& config) {
+  const std::string changed = pelorus::changed_settings(config);
+  std::printf("configuration %s is good\n", pelorus::config_hash(config).c_str());
+  std::printf("different from the defaults: %s\n", changed.empty() ? "nothing" : changed.c_str());
+  return 0;
+}
+
+int run_service(int argc, char** argv) {
+  CLI::App parser{"Pelorus: the vehicle's motion and the tracks of moving rigid bodies, live."};
+  parser.set_version_flag("--version", "pelorusd " PELORUS_VERSION);
+  Arguments arguments;
+  parser.add_option("--config", arguments.configs, "Settings file (config/pelorus.yaml); several apply in turn")
+      ->required()
+      ->allow_extra_args(false);
+  parser.add_flag("--check-config", arguments.check_config, "Check the settings, tell all problems, and end");
+  parser.footer(
+      "Exit codes: 0 stopped or recording at its end, 1 unexpected, 2 usage, 3 source, 4 calibration, 5 "
+      "configuration,\n"
+      "6 a file cannot be read, 7 device. See docs/service.md.");
+  try {
+    parser.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return parser.exit(e) == 0 ? 0 : pelorus::exit_code(ErrorCode::bad_usage);
+  }
+  pelorus::LogSink log(pelorus::stderr_is_journal());
+  const auto config = load(arguments.configs);
+  if (!config) {
+    log.line(pelorus::LogLevel::error, config.error().message());
+    return pelorus::exit_code(config.error().code);
+  }
+  if (arguments.check_config) return check(config.value());
+  pelorus::block_signals();
+  log.line(pelorus::LogLevel::notice, "pelorusd " PELORUS_VERSION);
+  const auto app = pelorus::App::create(config.value(), log);
+  if (!app) {
+    log.line(pelorus::LogLevel::error, app.error().message());
+    return pelorus::exit_code(app.error().code);
+  }
+  return app.value()->run();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run_service(argc, argv);
+  } catch (const std::exception& e) {
+    std::fprintf(stderr, "pelorusd: unexpected failure: %s\n", e.what());
+    return 1;
+  }
+}

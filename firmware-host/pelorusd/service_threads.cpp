@@ -1,0 +1,96 @@
+#include "firmware-host/pelorusd/service_threads.h"
+
+#include "firmware-host/pelorusd/mounting.h"
+#include "firmware-host/runtime/process_setup.h"
+#include "firmware-host/runtime/settings_hash.h"
+
+namespace pelorus {
+
+Result<std::unique_ptr<ServiceThreads>> ServiceThreads::start(const ServiceConfig& config, LogSink& log) {
+  std::unique_ptr<ServiceThreads> threads(new ServiceThreads(config));
+  const Result<Rigid3> T_body_cam = threads->prepare(log);
+  if (!T_body_cam) return T_body_cam.error();
+  threads->build(T_body_cam.value(), threads->ask_the_system(log));
+  return threads;
+}
+
+// All that can fail; returns where the camera sits in the vehicle.
+Result<Rigid3> ServiceThreads::prepare(LogSink& log) {
+  auto made = StereoHead::prepare(config, clock);
+  if (!made) return made.error();
+  head = std::move(made.value());
+  log.line(LogLevel::info, head->description());
+  auto rectification = Rectifier::create(head->calibration(), "calibration");
+  if (!rectification) return rectification.error();
+  rectifier = std::move(rectification.value());
+  const Mounting mounting = mounting_of(config.mounting, *rectifier, head->calibration().body_known);
+  log.line(LogLevel::info, mounting.origin);
+  config_fingerprint = config_hash(config);
+  calibration_fingerprint = calibration_hash(head->calibration());
+  log.line(LogLevel::info, "configuration " + config_fingerprint + ", calibration " + calibration_fingerprint);
+  const std::string changed = changed_settings(config);
+  if (!changed.empty()) log.line(LogLevel::info, "settings: " + changed);
+  return mounting.T_body_cam;
+}
+
+// Whether threads may be scheduled in real time.
+bool ServiceThreads::ask_the_system(LogSink& log) const {
+  if (config.process.lock_memory) {
+    if (const std::string why = lock_memory(); !why.empty()) log.line(LogLevel::warning, "memory not locked: " + why);
+  }
+  if (!config.process.realtime) return false;
+  const std::string why = realtime_refusal();
+  if (!why.empty()) log.line(LogLevel::warning, "no real-time scheduling: " + why);
+  return why.empty();
+}
+
+void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
+  const auto prepared = [realtime](const char* name, ThreadClass wanted) {
+    return [=] { (void)set_thread(name, realtime ? wanted : ThreadClass::normal); };
+  };
+  if (config.lcm.enabled) {
+    lcm = std::make_unique<LcmPublisher>(config.lcm, T_body_cam);
+    publishers.push_back(lcm.get());
+  }
+  publishing =
+      std::make_unique<PublishThread>(desk, publishers, config.timing, clock, prepared("publish", ThreadClass::normal));
+  preview = std::make_unique<Preview>(PreviewConfig{config.lcm.preview_rate_hz, config.lcm.preview_max_bytes},
+                                      rectifier->rig(), desk.previews, desk.wake,
+                                      [] { (void)set_thread("preview", ThreadClass::background); });
+  const VisionParts parts{head->sync(), *rectifier, desk.results, control, clock, preview.get()};
+  vision = std::make_unique<Vision>(parts, config.pipeline, config.capture, config.timing,
+                                    prepared("vision", ThreadClass::fifo_middle));
+  head->start(prepared("capture", ThreadClass::fifo_high));
+  if (config.lcm.enabled && config.lcm.commands) {
+    commands = std::make_unique<CommandListener>(
+        config.lcm, [this](const std::string& command, const std::string&) { return obey(command); });
+  }
+}
+
+void ServiceThreads::stop() {
+  if (head) head->stop();
+  commands.reset();
+  vision.reset();
+  preview.reset();
+  publishing.reset();
+}
+
+// On the listener's thread: only atomics are touched.
+CommandAnswer ServiceThreads::obey(const std::string& command) {
+  if (command == "reset") {
+    control.resets.fetch_add(1);
+    return {true, "the world starts anew with the next pair"};
+  }
+  if (command == "standby" || command == "resume") {
+    control.standby.store(command == "standby");
+    return {true, command == "standby" ? "resting" : "working"};
+  }
+  if (command == "snapshot") {
+    preview->request();
+    return {true, "the next picture goes out on VIS_IMAGE_LEFT"};
+  }
+  if (command == "record_start" || command == "record_stop") return {false, "no recorder is configured"};
+  return {false, "unknown command; known: reset, standby, resume, snapshot, record_start, record_stop"};
+}
+
+}  // namespace pelorus

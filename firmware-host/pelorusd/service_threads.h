@@ -1,0 +1,49 @@
+#pragma once
+// ServiceThreads: the parts of the service and the threads that run them, wired together from the configuration. Built
+// from the buses to the cameras, ended in the opposite order; what is borrowed outlives its borrowers. Thread-bound to
+// the main thread, but for what the parts themselves allow.
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "firmware-host/pelorusd/stereo_head.h"
+#include "firmware-host/runtime/log_sink.h"
+#include "services/command_listener.h"
+#include "services/lcm_publisher.h"
+#include "services/publish_thread.h"
+#include "services/vision.h"
+
+namespace pelorus {
+
+struct ServiceThreads {
+  // Errors: the source or its calibration cannot be used. Everything runs on success.
+  [[nodiscard]] static Result<std::unique_ptr<ServiceThreads>> start(const ServiceConfig& config, LogSink& log);
+  ~ServiceThreads() { stop(); }
+  void stop();
+
+  ServiceConfig config;
+  CaptureClock clock;
+  std::string config_fingerprint;
+  std::string calibration_fingerprint;
+  std::unique_ptr<StereoHead> head;
+  std::optional<Rectifier> rectifier;
+  PublishDesk desk;
+  VisionControl control;
+  std::vector<Publisher*> publishers;
+  std::unique_ptr<LcmPublisher> lcm;  // absent when off
+  std::unique_ptr<PublishThread> publishing;
+  std::unique_ptr<Preview> preview;
+  std::unique_ptr<Vision> vision;  // absent once the recording is at its end
+  std::unique_ptr<CommandListener> commands;
+
+ private:
+  explicit ServiceThreads(const ServiceConfig& c) : config(c) {}
+  [[nodiscard]] Result<Rigid3> prepare(LogSink& log);
+  [[nodiscard]] bool ask_the_system(LogSink& log) const;
+  void build(const Rigid3& T_body_cam, bool realtime);
+  [[nodiscard]] CommandAnswer obey(const std::string& command);
+};
+
+}  // namespace pelorus

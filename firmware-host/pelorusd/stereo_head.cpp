@@ -1,0 +1,70 @@
+#include "firmware-host/pelorusd/stereo_head.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "drivers/source_camera.h"
+#include "firmware-host/runtime/replay_source.h"
+
+namespace pelorus {
+namespace {
+
+constexpr int kRingSlots = 8;
+
+}  // namespace
+
+Result<std::unique_ptr<StereoHead>> StereoHead::prepare(const ServiceConfig& config, const CaptureClock& clock) {
+  std::unique_ptr<StereoHead> head(new StereoHead());
+  const SourceConfig& source = config.source;
+  std::error_code ignored;
+  const bool folder = std::filesystem::is_directory(source.path, ignored);
+  if (source.kind == "synthetic" && folder) {
+    return Error{ErrorCode::bad_configuration, source.path, "is a folder, source.kind says synthetic",
+                 "give a scene file, or write kind: replay"};
+  }
+  if (source.kind == "replay" && !folder) {
+    return Error{ErrorCode::bad_input, source.path, "is no folder of recorded pairs", "check source.path"};
+  }
+  // Opened once here, so that a wrong path or calibration ends the start with its own message.
+  Result<std::unique_ptr<StereoSource>> first = open_source(source.path, source.calibration);
+  if (!first) return first.error();
+  head->calibration_ = first.value()->calibration();
+  head->description_ = first.value()->description();
+  const CameraIntrinsics& left = head->calibration_.left;
+  head->rings_.push_back(std::make_unique<FrameRing>(kRingSlots, FrameFormat{left.width, left.height, 2}));
+  head->sync_ = std::make_unique<StereoSync>(*head->rings_[0]);
+  const PaceConfig pace{source.rate_hz, source.repeat};
+  const auto open = [path = source.path, calibration = source.calibration] { return open_source(path, calibration); };
+  head->cameras_.push_back(std::make_unique<SourceCamera>(open, pace, clock));
+  return head;
+}
+
+StereoHead::~StereoHead() { stop(); }
+
+void StereoHead::start(std::function<void()> on_thread_start) {
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    captures_.push_back(
+        std::make_unique<Capture>(std::move(cameras_[i]), *rings_[i], capture_config_, on_thread_start));
+  }
+  cameras_.clear();
+}
+
+void StereoHead::stop() {
+  for (const auto& capture : captures_) capture->request_stop();
+  captures_.clear();
+}
+
+std::vector<CaptureStatus> StereoHead::status() const {
+  std::vector<CaptureStatus> all;
+  for (const auto& capture : captures_) all.push_back(capture->status());
+  return all;
+}
+
+bool StereoHead::exhausted() const {
+  const bool ended = !captures_.empty() && std::all_of(captures_.begin(), captures_.end(), [](const auto& capture) {
+    return capture->status().state == CaptureState::ended;
+  });
+  return ended && std::none_of(rings_.begin(), rings_.end(), [](const auto& ring) { return ring->has_frame(); });
+}
+
+}  // namespace pelorus

@@ -1,0 +1,56 @@
+#include "firmware-host/runtime/process_setup.h"
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+namespace pelorus {
+namespace {
+
+constexpr int kHighPriority = 40;
+constexpr int kMiddlePriority = 30;
+constexpr int kBackgroundNice = 10;
+
+}  // namespace
+
+std::string lock_memory() {
+  rlimit limit{};
+  ::getrlimit(RLIMIT_MEMLOCK, &limit);
+  if (limit.rlim_cur != RLIM_INFINITY && ::geteuid() != 0) {
+    return "the limit of locked memory is " + std::to_string(limit.rlim_cur >> 10) + " kB (LimitMEMLOCK=infinity)";
+  }
+  if (::mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return "";
+  return std::strerror(errno);
+}
+
+std::string set_thread(const char* name, ThreadClass wanted) {
+  ::pthread_setname_np(::pthread_self(), name);
+  if (wanted == ThreadClass::normal) return "";
+  if (wanted == ThreadClass::background) {
+    // On Linux the nice value is the thread's own.
+    return ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kBackgroundNice) == 0 ? "" : std::strerror(errno);
+  }
+  sched_param parameters{};
+  parameters.sched_priority = wanted == ThreadClass::fifo_high ? kHighPriority : kMiddlePriority;
+  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
+  return error == 0 ? "" : std::strerror(error);
+}
+
+std::string realtime_refusal() {
+  sched_param before{};
+  int policy = 0;
+  ::pthread_getschedparam(::pthread_self(), &policy, &before);
+  sched_param wanted{};
+  wanted.sched_priority = kHighPriority;
+  const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &wanted);
+  if (error != 0) return std::string(std::strerror(error)) + " (LimitRTPRIO=50)";
+  ::pthread_setschedparam(::pthread_self(), policy, &before);
+  return "";
+}
+
+}  // namespace pelorus

@@ -1,0 +1,26 @@
+#pragma once
+// What the program asks of the operating system: memory that stays, real-time scheduling of the threads that need it.
+// Each is a wish: refused, the service goes on without and says so. Any thread, at its start.
+
+#include <string>
+
+namespace pelorus {
+
+// Empty when granted, else why not. Asks only when the limit allows all of it: a partly locked process would be refused
+// memory later (mlockall(2), MCL_FUTURE).
+[[nodiscard]] std::string lock_memory();
+
+enum class ThreadClass {
+  fifo_high,    // capture: a picture waits for nobody
+  fifo_middle,  // vision
+  normal,       // publishing
+  background    // previews, recording
+};
+
+// Names the calling thread (15 characters) and sets its class. Empty when granted, else why not.
+[[nodiscard]] std::string set_thread(const char* name, ThreadClass wanted);
+
+// Whether the process may use real-time scheduling at all; empty, or why not.
+[[nodiscard]] std::string realtime_refusal();
+
+}  // namespace pelorus
