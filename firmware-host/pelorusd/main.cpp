@@ -32,7 +32,8 @@ pelorus::Result<pelorus::ServiceConfig> load(const std::vector<std::string>& fil
     problems += (problems.empty() ? "" : "\n") + applied.error().message();
     code = applied.error().code;
   }
-  if (problems.empty() && config.source.path.empty()) {
+  const bool needs_path = config.source.kind == "replay" || config.source.kind == "synthetic";
+  if (problems.empty() && needs_path && config.source.path.empty()) {
     problems = files.back() + ": source.path is not given (write where the pairs come from)";
   }
   if (!problems.empty()) return Error{code, "configuration", problems, ""};

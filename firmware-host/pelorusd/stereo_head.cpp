@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "drivers/source_camera.h"
+#include "firmware-host/runtime/calibration.h"
 #include "firmware-host/runtime/replay_source.h"
 
 namespace pelorus {
@@ -15,7 +16,13 @@ constexpr int kRingSlots = 8;
 
 Result<std::unique_ptr<StereoHead>> StereoHead::prepare(const ServiceConfig& config, const CaptureClock& clock) {
   std::unique_ptr<StereoHead> head(new StereoHead());
-  const SourceConfig& source = config.source;
+  const bool live = config.source.kind != "replay" && config.source.kind != "synthetic";
+  const Result<> prepared = live ? head->prepare_live(config, clock) : head->prepare_source(config.source, clock);
+  if (!prepared) return prepared.error();
+  return head;
+}
+
+Result<> StereoHead::prepare_source(const SourceConfig& source, const CaptureClock& clock) {
   std::error_code ignored;
   const bool folder = std::filesystem::is_directory(source.path, ignored);
   if (source.kind == "synthetic" && folder) {
@@ -28,15 +35,40 @@ Result<std::unique_ptr<StereoHead>> StereoHead::prepare(const ServiceConfig& con
   // Opened once here, so that a wrong path or calibration ends the start with its own message.
   Result<std::unique_ptr<StereoSource>> first = open_source(source.path, source.calibration);
   if (!first) return first.error();
-  head->calibration_ = first.value()->calibration();
-  head->description_ = first.value()->description();
-  const CameraIntrinsics& left = head->calibration_.left;
-  head->rings_.push_back(std::make_unique<FrameRing>(kRingSlots, FrameFormat{left.width, left.height, 2}));
-  head->sync_ = std::make_unique<StereoSync>(*head->rings_[0]);
+  calibration_ = first.value()->calibration();
+  description_ = first.value()->description();
+  const CameraIntrinsics& left = calibration_.left;
+  rings_.push_back(std::make_unique<FrameRing>(kRingSlots, FrameFormat{left.width, left.height, 2}));
+  sync_ = std::make_unique<StereoSync>(*rings_[0]);
   const PaceConfig pace{source.rate_hz, source.repeat};
   const auto open = [path = source.path, calibration = source.calibration] { return open_source(path, calibration); };
-  head->cameras_.push_back(std::make_unique<SourceCamera>(open, pace, clock));
-  return head;
+  cameras_.push_back(std::make_unique<SourceCamera>(open, pace, clock));
+  return Ok{};
+}
+
+// Nothing is opened here: a camera that is not there yet is a state, not an error.
+Result<> StereoHead::prepare_live(const ServiceConfig& config, const CaptureClock& clock) {
+  if (config.source.calibration.empty()) {
+    return Error{ErrorCode::bad_configuration, "source.calibration", "is not given, and live cameras bring none",
+                 "name the calibration file of this pair of cameras"};
+  }
+  Result<LoadedCalibration> loaded = load_calibration(config.source.calibration);
+  if (!loaded) return loaded.error();
+  calibration_ = loaded.value().calibration;
+  description_ = "live cameras (" + config.source.kind + "), calibration: " + loaded.value().origin;
+  for (const std::string& assumption : loaded.value().assumptions) description_ += "\nassumed: " + assumption;
+  auto cameras = make_cameras(config.source.kind, config.camera, clock);
+  if (!cameras) return cameras.error();
+  cameras_ = std::move(cameras.value());
+  capture_config_.reopen_after_s = config.camera.reopen_after_s;
+  const int views = cameras_.size() == 1 ? 2 : 1;
+  for (std::size_t i = 0; i < cameras_.size(); ++i) {
+    const FrameFormat format{calibration_.left.width, calibration_.left.height, views};
+    rings_.push_back(std::make_unique<FrameRing>(config.camera.ring_slots, format));
+  }
+  sync_ = views == 2 ? std::make_unique<StereoSync>(*rings_[0])
+                     : std::make_unique<StereoSync>(*rings_[0], *rings_[1], sync_config(config.camera));
+  return Ok{};
 }
 
 StereoHead::~StereoHead() { stop(); }

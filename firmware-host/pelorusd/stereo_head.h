@@ -37,6 +37,8 @@ class StereoHead {
 
  private:
   StereoHead() = default;
+  [[nodiscard]] Result<> prepare_source(const SourceConfig& source, const CaptureClock& clock);
+  [[nodiscard]] Result<> prepare_live(const ServiceConfig& config, const CaptureClock& clock);
 
   StereoCalibration calibration_;
   std::string description_;
