@@ -33,6 +33,7 @@ struct CameraStatistics {
   std::uint64_t timeouts = 0;          // next() without a frame
   std::uint64_t lost = 0;              // times the device disappeared
   std::uint64_t opened = 0;            // times it was opened
+  std::uint64_t restarts = 0;          // times a silent stream was restarted in place
   std::uint64_t time_corrections = 0;  // stamps that contradicted the capture clock and were replaced
   std::uint64_t resend_requests = 0;   // packets asked for again (GigE Vision)
   std::uint64_t resent_packets = 0;    // and received then
