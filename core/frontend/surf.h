@@ -22,6 +22,9 @@ struct SurfConfig {
   float threshold = 10.0F;  // least determinant, grey levels^2
   bool upright = true;      // no orientation: for rigs that do not roll between images
   int max_points = 1500;
+  // One blob answers in neighbouring filter sizes of two octaves: only the stronger answer is kept. Twins cost points
+  // and fail the ratio test against each other.
+  bool distinct = true;
 };
 
 struct SurfPoint {

@@ -6,12 +6,16 @@
 
 #include "core/base/check.h"
 #include "core/kernels/box_hessian.h"
+#include "core/kernels/local_maxima.h"
 
 namespace pelorus {
 namespace {
 
 constexpr int kRowSlack = 16;                // hessian_row may write past the row
 constexpr float kScalePerFilter = 1.2F / 9;  // the 9x9 filter stands for sigma 1.2 (Bay, section 3.3)
+
+constexpr int kCellPx = 16;           // of the search for twins
+constexpr float kTwinScales = 1.23F;  // ratio of scales: neighbouring filters of two octaves, 27/21 and less
 
 int filter_size(int octave, int interval) { return 3 * ((2 << octave) * (interval + 1) + 1); }
 
@@ -52,7 +56,7 @@ void take(const ResponseLayer& finer, ResponseLayer& layer) {
 }
 
 struct Neighbourhood {
-  const float* rows[3][3];  // [layer below, this, above][row]; element [i] is the middle column
+  LayerRows rows;  // [layer below, this, above][row]; element [i] is the middle column
 
   Neighbourhood(const ResponseLayer& below, const ResponseLayer& middle, const ResponseLayer& above, int j) {
     const ResponseLayer* layers[3] = {&below, &middle, &above};
@@ -61,20 +65,6 @@ struct Neighbourhood {
     }
   }
   [[nodiscard]] float at(int s, int r, int i) const { return rows[s + 1][r + 1][i]; }
-
-  // Strictly above what comes later and not below what came before, so that of two equals exactly one is a maximum.
-  [[nodiscard]] bool is_maximum(int i) const {
-    const float value = at(0, 0, i);
-    for (int s = -1; s <= 1; ++s) {
-      for (int r = -1; r <= 1; ++r) {
-        for (int c = -1; c <= 1; ++c) {
-          const int order = 9 * s + 3 * r + c;
-          if (order < 0 ? at(s, r, i + c) > value : order > 0 && at(s, r, i + c) >= value) return false;
-        }
-      }
-    }
-    return true;
-  }
 };
 
 struct Peak {
@@ -111,13 +101,23 @@ Peak interpolate(const Neighbourhood& n, int i) {
   return peak;
 }
 
-bool stronger(const SurfPoint& a, const SurfPoint& b) {
+bool stronger(const SurfScaleSpace::Candidate& p, const SurfScaleSpace::Candidate& q) {
+  const SurfPoint& a = p.point;
+  const SurfPoint& b = q.point;
   return std::tie(b.response, a.v_px, a.u_px, a.scale) < std::tie(a.response, b.v_px, b.u_px, b.scale);
+}
+
+bool are_twins(const SurfPoint& a, const SurfPoint& b) {
+  const float du = a.u_px - b.u_px;
+  const float dv = a.v_px - b.v_px;
+  const float smaller = std::min(a.scale, b.scale);
+  return du * du + dv * dv < smaller * smaller && std::max(a.scale, b.scale) < kTwinScales * smaller;
 }
 
 }  // namespace
 
-SurfScaleSpace::SurfScaleSpace(const SurfConfig& config, int width, int height) : config_(config) {
+SurfScaleSpace::SurfScaleSpace(const SurfConfig& config, int width, int height)
+    : config_(config), cell_columns_(width / kCellPx + 1), cell_rows_(height / kCellPx + 1) {
   PELORUS_CHECK(config.octaves >= 1 && config.octaves <= 4, "SURF octaves must be 1..4");
   PELORUS_CHECK(config.intervals >= 3 && config.intervals <= 5, "SURF intervals must be 3..5");
   PELORUS_CHECK(config.max_points >= 1, "SURF needs room for points");
@@ -132,6 +132,10 @@ SurfScaleSpace::SurfScaleSpace(const SurfConfig& config, int width, int height) 
     }
   }
   candidates_.reserve(static_cast<std::size_t>(std::max(4 * config.max_points, 8192)));
+  points_.reserve(static_cast<std::size_t>(config.max_points));
+  columns_.resize(static_cast<std::size_t>(layers_.front().width));
+  latest_in_cell_.resize(static_cast<std::size_t>(cell_columns_ * cell_rows_));
+  before_.resize(candidates_.capacity());
 }
 
 const ResponseLayer& SurfScaleSpace::layer(int octave, int interval) const {
@@ -148,49 +152,100 @@ void SurfScaleSpace::build(const IntegralImage& integral) {
   }
 }
 
-void SurfScaleSpace::find_in(const IntegralImage& integral, int octave, int interval) {
+void SurfScaleSpace::find_in(int octave, int interval) {
   const ResponseLayer& below = layer(octave, interval - 1);
   const ResponseLayer& middle = layer(octave, interval);
   const ResponseLayer& above = layer(octave, interval + 1);
-  const float filter_step = static_cast<float>(6 << octave);
+  const auto filter_step = static_cast<float>(6 << octave);
   const auto step = static_cast<float>(middle.step);
-  for (int j = above.first + 1; j < above.last_v; ++j) {
+  const int first = above.first + 1;
+  for (int j = first; j < above.last_v; ++j) {
     const Neighbourhood n(below, middle, above, j);
-    for (int i = above.first + 1; i < above.last_u; ++i) {
-      const float value = n.at(0, 0, i);
-      if (!(value > config_.threshold) || !n.is_maximum(i)) continue;
+    const int found = local_maxima(n.rows, first, above.last_u - first, config_.threshold, columns_.data());
+    for (int k = 0; k < found; ++k) {
+      const int i = columns_[static_cast<std::size_t>(k)];
       const Peak peak = interpolate(n, i);
       if (!peak.inside) continue;
-      SurfPoint point;
-      point.u_px = (static_cast<float>(i) + peak.du) * step;
-      point.v_px = (static_cast<float>(j) + peak.dv) * step;
-      point.scale = kScalePerFilter * (static_cast<float>(middle.filter_size) + peak.ds * filter_step);
-      point.response = value + peak.gain;
-      const int sign = laplacian_sign(integral, middle.filter_size, i * middle.step, j * middle.step);
-      point.laplacian = static_cast<std::int8_t>(sign);
-      if (candidates_.size() == candidates_.capacity()) keep_strongest();
-      candidates_.push_back(point);
+      Candidate candidate;
+      candidate.point.u_px = (static_cast<float>(i) + peak.du) * step;
+      candidate.point.v_px = (static_cast<float>(j) + peak.dv) * step;
+      candidate.point.scale = kScalePerFilter * (static_cast<float>(middle.filter_size) + peak.ds * filter_step);
+      candidate.point.response = n.at(0, 0, i) + peak.gain;
+      candidate.filter_size = middle.filter_size;
+      candidate.u = i * middle.step;
+      candidate.v = j * middle.step;
+      if (candidates_.size() == candidates_.capacity()) keep_strongest(candidates_.size() / 2);
+      candidates_.push_back(candidate);
     }
   }
 }
 
 // Drops what cannot be among the answer any more; the order is total, so the result depends on nothing else.
-void SurfScaleSpace::keep_strongest() {
-  const auto wanted = static_cast<std::size_t>(config_.max_points);
+void SurfScaleSpace::keep_strongest(std::size_t wanted) {
   if (candidates_.size() <= wanted) return;
   const auto end = candidates_.begin() + static_cast<std::ptrdiff_t>(wanted);
   std::nth_element(candidates_.begin(), end, candidates_.end(), stronger);
   candidates_.resize(wanted);
 }
 
+bool SurfScaleSpace::has_twin(const SurfPoint& point) const {
+  const auto cell = [](float px, int cells) { return std::clamp(static_cast<int>(px) / kCellPx, 0, cells - 1); };
+  const int last_row = cell(point.v_px + point.scale, cell_rows_);
+  const int last_column = cell(point.u_px + point.scale, cell_columns_);
+  for (int row = cell(point.v_px - point.scale, cell_rows_); row <= last_row; ++row) {
+    for (int column = cell(point.u_px - point.scale, cell_columns_); column <= last_column; ++column) {
+      auto k = latest_in_cell_[static_cast<std::size_t>(row * cell_columns_ + column)];
+      for (; k >= 0; k = before_[static_cast<std::size_t>(k)]) {
+        if (are_twins(candidates_[static_cast<std::size_t>(k)].point, point)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// Of candidates ordered by strength.
+void SurfScaleSpace::drop_twins() {
+  std::fill(latest_in_cell_.begin(), latest_in_cell_.end(), -1);
+  std::size_t kept = 0;
+  const auto wanted = static_cast<std::size_t>(config_.max_points);
+  for (std::size_t k = 0; k < candidates_.size() && kept < wanted; ++k) {
+    const Candidate candidate = candidates_[k];
+    if (has_twin(candidate.point)) continue;
+    const int row = std::clamp(static_cast<int>(candidate.point.v_px) / kCellPx, 0, cell_rows_ - 1);
+    const int column = std::clamp(static_cast<int>(candidate.point.u_px) / kCellPx, 0, cell_columns_ - 1);
+    std::int32_t& latest = latest_in_cell_[static_cast<std::size_t>(row * cell_columns_ + column)];
+    before_[kept] = latest;
+    latest = static_cast<std::int32_t>(kept);
+    candidates_[kept++] = candidate;
+  }
+  candidates_.resize(kept);
+}
+
+// The finer octave finds the maxima of this layer too, and places them better.
+bool SurfScaleSpace::searched_before(int octave, int interval) const {
+  const int same = layer(octave, interval).same_as;
+  if (same < 0 || !config_.distinct) return false;
+  const int finer_interval = same % config_.intervals;
+  return finer_interval > 0 && finer_interval + 1 < config_.intervals;
+}
+
 std::span<const SurfPoint> SurfScaleSpace::find_maxima(const IntegralImage& integral) {
   candidates_.clear();
   for (int o = 0; o < config_.octaves; ++o) {
-    for (int i = 1; i + 1 < config_.intervals; ++i) find_in(integral, o, i);
+    for (int i = 1; i + 1 < config_.intervals; ++i) {
+      if (!searched_before(o, i)) find_in(o, i);
+    }
   }
-  keep_strongest();
+  const auto wanted = static_cast<std::size_t>(config_.max_points);
+  keep_strongest(config_.distinct ? wanted + wanted / 2 : wanted);  // some are twins
   std::sort(candidates_.begin(), candidates_.end(), stronger);
-  return candidates_;
+  if (config_.distinct) drop_twins();
+  points_.clear();
+  for (const Candidate& c : candidates_) {
+    points_.push_back(c.point);
+    points_.back().laplacian = static_cast<std::int8_t>(laplacian_sign(integral, c.filter_size, c.u, c.v));
+  }
+  return points_;
 }
 
 }  // namespace pelorus

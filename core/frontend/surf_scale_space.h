@@ -34,18 +34,36 @@ class SurfScaleSpace {
  public:
   SurfScaleSpace(const SurfConfig& config, int width, int height);
 
+  // A maximum and the sample it was found at.
+  struct Candidate {
+    SurfPoint point;
+    int filter_size = 0;
+    int u = 0;
+    int v = 0;
+  };
+
   void build(const IntegralImage& integral);
   // Strongest config.max_points maxima over the threshold, ordered by response, then place; angle 0.
   [[nodiscard]] std::span<const SurfPoint> find_maxima(const IntegralImage& integral);
 
  private:
-  void find_in(const IntegralImage& integral, int octave, int interval);
-  void keep_strongest();
+  void find_in(int octave, int interval);
+  [[nodiscard]] bool searched_before(int octave, int interval) const;
+  void keep_strongest(std::size_t wanted);
+  void drop_twins();
+  [[nodiscard]] bool has_twin(const SurfPoint& point) const;
   [[nodiscard]] const ResponseLayer& layer(int octave, int interval) const;
 
   SurfConfig config_;
   std::vector<ResponseLayer> layers_;  // octave by octave
-  std::vector<SurfPoint> candidates_;
+  std::vector<Candidate> candidates_;
+  std::vector<SurfPoint> points_;
+  std::vector<std::int32_t> columns_;  // of one row
+  // Candidates by place, for drop_twins(): the latest of each cell, and for each candidate the one before it.
+  int cell_columns_;
+  int cell_rows_;
+  std::vector<std::int32_t> latest_in_cell_;
+  std::vector<std::int32_t> before_;
 };
 
 }  // namespace pelorus

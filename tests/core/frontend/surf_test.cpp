@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -201,6 +202,34 @@ TEST(Surf, TheStrongestComeFirstAndTheCountIsBounded) {
     EXPECT_EQ(few[i].u_px, all[i].u_px);
     EXPECT_EQ(few[i].v_px, all[i].v_px);
     EXPECT_GE(few[i > 0 ? i - 1 : 0].response, few[i].response);
+  }
+}
+
+int twins_in(const std::vector<SurfPoint>& points) {
+  int twins = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      const float smaller = std::min(points[i].scale, points[k].scale);
+      const float larger = std::max(points[i].scale, points[k].scale);
+      const float apart_px = std::hypot(points[i].u_px - points[k].u_px, points[i].v_px - points[k].v_px);
+      if (apart_px < smaller && larger < 1.2F * smaller) ++twins;
+    }
+  }
+  return twins;
+}
+
+TEST(Surf, OneBlobIsOnePointThoughTwoOctavesSeeIt) {
+  const Image image = test::render(AnalyticTexture(5, 6.0), kWidth, kHeight, 1.0, 1, unmoved);
+  SurfConfig config = config_for(true);
+  for (const int intervals : {4, 5}) {
+    config.intervals = intervals;
+    config.distinct = true;
+    const auto distinct = features_of(image, config).points;
+    config.distinct = false;
+    const auto all = features_of(image, config).points;
+    EXPECT_EQ(twins_in(distinct), 0);
+    EXPECT_GT(twins_in(all), 0);  // or there was nothing to drop
+    EXPECT_GT(distinct.size(), all.size() / 2);
   }
 }
 
