@@ -2,9 +2,6 @@
 #include "services/lcm_publisher.h"
 
 #include <gtest/gtest.h>
-#include <signal.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include <bot_core/image_t.hpp>
 #include <bot_core/pose_t.hpp>
@@ -13,9 +10,8 @@
 
 #include "services/lcm_messages.h"
 #include "tests/services/lcm_loopback.h"
+#include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"
-
-extern char** environ;
 
 namespace pelorus {
 namespace {
@@ -174,34 +170,10 @@ TEST(LcmLink, WithoutANetworkCountsAndGoesOn) {
   EXPECT_EQ(publisher.link().errors(), 1U) << "one try a second, not one a message";
 }
 
-class Process {
- public:
-  explicit Process(std::vector<std::string> arguments) {
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
-    if (::posix_spawnp(&pid_, argv[0], nullptr, nullptr, argv.data(), environ) != 0) pid_ = -1;
-  }
-  ~Process() { (void)stop(SIGKILL); }
-  [[nodiscard]] bool started() const { return pid_ > 0; }
-  // Exit status, or -1 when a signal ended it.
-  int stop(int signal) {
-    if (pid_ <= 0) return -1;
-    if (signal != 0) ::kill(pid_, signal);
-    int status = 0;
-    ::waitpid(pid_, &status, 0);
-    pid_ = -1;
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
-
- private:
-  pid_t pid_ = -1;
-};
-
 TEST_F(LcmBus, LoggerAndPlayerGiveBackWhatWasPublished) {
   const test::TemporaryFolder folder;
   const std::string log = (folder.path() / "dive.lcmlog").string();
-  Process logger({"lcm-logger", "-q", "--lcm-url=" + config_.url, log});
+  test::ChildProcess logger({"lcm-logger", "-q", "--lcm-url=" + config_.url, log});
   if (!logger.started()) GTEST_SKIP() << "lcm-logger is not installed (package liblcm-bin)";
   constexpr int kMessages = 20;
   {
@@ -221,14 +193,15 @@ TEST_F(LcmBus, LoggerAndPlayerGiveBackWhatWasPublished) {
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(300));  // the logger writes every 100 ms
   }
-  EXPECT_EQ(logger.stop(SIGINT), 0);
+  logger.send(SIGINT);
+  EXPECT_EQ(logger.wait(), 0);
 
   const std::string other_url = test::loopback_url(1);
   test::Listener<vis_odom_t> listener(other_url, "TEST.VIS_ODOM");
-  Process player({"lcm-logplayer", "-l", other_url, log});
+  test::ChildProcess player({"lcm-logplayer", "-l", other_url, log});
   ASSERT_TRUE(player.started());
   EXPECT_TRUE(listener.wait_for(kMessages));
-  EXPECT_EQ(player.stop(0), 0);
+  EXPECT_EQ(player.wait(), 0);
   for (int i = 0; i < kMessages; ++i) {
     vis_odom_t& got = listener.messages[static_cast<std::size_t>(i)];
     EXPECT_EQ(got.seq, i);

@@ -1,0 +1,187 @@
+// Starting pelorusd: messages and exit codes, the service manager, and a computer without a multicast route.
+#include <gtest/gtest.h>
+#include <net/if.h>
+#include <net/route.h>
+#include <netinet/in.h>
+#include <sched.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+
+#include <array>
+#include <cstdio>
+#include <cstring>
+
+#include "tests/firmware-host/pelorusd/running_service.h"
+
+namespace pelorus {
+namespace {
+
+using test::TemporaryFolder;
+
+struct Outcome {
+  int exit_code = 0;
+  std::string text;
+};
+
+Outcome start(const std::string& arguments) {
+  Outcome outcome;
+  std::FILE* pipe = popen((std::string(PELORUSD) + " " + arguments + " 2>&1").c_str(), "r");
+  std::array<char, 512> part{};
+  while (pipe && std::fgets(part.data(), part.size(), pipe)) outcome.text += part.data();
+  const int status = pipe ? pclose(pipe) : -1;
+  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return outcome;
+}
+
+Outcome start_with(const std::string& settings, const std::string& option = "") {
+  const TemporaryFolder folder;
+  test::write_text(folder.path() / "p.yaml", settings);
+  return start("--config " + (folder.path() / "p.yaml").string() + " " + option);
+}
+
+TEST(Start, EachKindOfFailureHasItsExitCodeAndSaysWhere) {
+  EXPECT_EQ(start("").exit_code, 2);
+  EXPECT_EQ(start("--config").exit_code, 2);
+  const Outcome absent = start("--config /nonexistent/pelorus.yaml");
+  EXPECT_EQ(absent.exit_code, 6);
+  EXPECT_NE(absent.text.find("/nonexistent/pelorus.yaml"), std::string::npos);
+  const Outcome no_source = start_with("source:\n  path: /nonexistent/dive\n");
+  EXPECT_EQ(no_source.exit_code, 3);
+  EXPECT_NE(no_source.text.find("/nonexistent/dive"), std::string::npos) << no_source.text;
+  EXPECT_EQ(start_with("").exit_code, 5) << "no source is given";
+  const Outcome no_calibration = start_with("source:\n  kind: aravis\n");
+  EXPECT_EQ(no_calibration.exit_code, 5);
+  EXPECT_NE(no_calibration.text.find("source.calibration"), std::string::npos) << no_calibration.text;
+}
+
+TEST(Start, AllProblemsOfTheConfigurationAreListedWithTheirLines) {
+  const Outcome outcome =
+      start_with("source:\n  pth: x\ntiming:\n  latency: 3\nlcm:\n  vehicle: [1]\nxyz:\n", "--check-config");
+  EXPECT_EQ(outcome.exit_code, 5);
+  for (const char* part : {"4 problems", "p.yaml:2", "p.yaml:4", "latency_ms", "p.yaml:6", "p.yaml:7"}) {
+    EXPECT_NE(outcome.text.find(part), std::string::npos) << part << "\n" << outcome.text;
+  }
+}
+
+TEST(Start, CheckConfigEndsWithoutStarting) {
+  const Outcome good = start_with("source:\n  path: /nonexistent\n", "--check-config");
+  EXPECT_EQ(good.exit_code, 0);
+  EXPECT_NE(good.text.find("source.path='/nonexistent'"), std::string::npos) << good.text;
+}
+
+TEST(Start, ServiceManagerHearsReadyWatchdogAndStopping) {
+  if (!test::lcm_available()) GTEST_SKIP() << "no multicast route: ip route add 224.0.0.0/4 dev lo";
+  const TemporaryFolder folder;
+  const std::string name = (folder.path() / "notify").string();
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  std::memcpy(address.sun_path, name.data(), name.size());
+  const int fd = ::socket(AF_UNIX, SOCK_DGRAM, 0);
+  ASSERT_EQ(::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  const timeval patience{10, 0};
+  ::setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+  ::setenv("NOTIFY_SOCKET", name.c_str(), 1);
+  ::setenv("WATCHDOG_USEC", "1000000", 1);
+  test::RunningService service(test::rendered_dive(), "# repeat\n", 8);
+  ::unsetenv("NOTIFY_SOCKET");
+  ::unsetenv("WATCHDOG_USEC");
+  std::string heard;
+  int watchdogs = 0;
+  const auto hear_until = [&](const std::string& wanted, int times) {
+    std::array<char, 512> text{};
+    for (int count = 0; count < times;) {
+      const ssize_t length = ::recv(fd, text.data(), text.size(), 0);
+      if (length <= 0) return false;
+      const std::string part(text.data(), static_cast<std::size_t>(length));
+      heard += part + "\n";
+      watchdogs += part == "WATCHDOG=1" ? 1 : 0;
+      count += part.find(wanted) != std::string::npos ? 1 : 0;
+    }
+    return true;
+  };
+  EXPECT_TRUE(hear_until("READY=1", 1)) << heard;
+  EXPECT_TRUE(hear_until("WATCHDOG=1", 5)) << heard;
+  EXPECT_TRUE(hear_until("STATUS=TRACKING", 1)) << heard;
+  service.process->send(SIGTERM);
+  EXPECT_TRUE(hear_until("STOPPING=1", 1)) << heard;
+  EXPECT_EQ(service.process->wait(), 0);
+  ::close(fd);
+}
+
+// --- A network namespace of its own: a computer without a route for multicast ---
+
+bool enter_empty_network() {
+  if (::unshare(CLONE_NEWNET) == 0) return true;
+  return ::unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0;
+}
+
+void set_loopback_up() {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
+  ifreq request{};
+  std::strcpy(request.ifr_name, "lo");
+  request.ifr_flags = IFF_UP | IFF_RUNNING;
+  ::ioctl(fd, SIOCSIFFLAGS, &request);
+  ::close(fd);
+}
+
+bool add_multicast_route() {
+  const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
+  rtentry route{};
+  const auto set = [](sockaddr& place, std::uint32_t ip) {
+    sockaddr_in in{};
+    in.sin_family = AF_INET;
+    in.sin_addr.s_addr = htonl(ip);
+    std::memcpy(&place, &in, sizeof in);
+  };
+  set(route.rt_dst, 0xE0000000);
+  set(route.rt_genmask, 0xF0000000);
+  set(route.rt_gateway, 0);
+  route.rt_flags = RTF_UP;
+  std::string device = "lo";
+  route.rt_dev = device.data();
+  const bool added = ::ioctl(fd, SIOCADDRT, &route) == 0;
+  ::close(fd);
+  return added;
+}
+
+// In a child, because a process cannot leave a namespace it entered. Exit code 0: all went as it should.
+int without_route(const std::filesystem::path& dive) {
+  if (!enter_empty_network()) return 77;
+  set_loopback_up();
+  const TemporaryFolder folder;
+  const std::string url = test::loopback_url(9);
+  test::write_text(folder.path() / "p.yaml", "source:\n  path: \"" + dive.string() +
+                                                 "\"\n  repeat: true\nlcm:\n  url: \"" + url + "\"\n  vehicle: TEST\n");
+  test::ChildProcess service({PELORUSD, "--config", (folder.path() / "p.yaml").string()}, folder.path() / "log");
+  const auto log = [&] { return test::read_text(folder.path() / "log"); };
+  const auto says = [&](const char* text) {
+    for (int i = 0; i < 100 && log().find(text) == std::string::npos; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    }
+    return log().find(text) != std::string::npos;
+  };
+  if (!says("LCM cannot be reached")) return 1;
+  if (!says("TRACKING")) return 2;  // vision goes on meanwhile
+  if (!add_multicast_route()) return 3;
+  test::Listener<vis_odom_t> odom(url, "TEST.VIS_ODOM");
+  if (!odom.wait_for(3, 10)) return 4;
+  test::Listener<vis_health_t> health(url, "TEST.VIS_HEALTH");
+  if (!health.wait_for(1, 10) || health.messages[0].lcm_errors == 0) return 5;
+  service.send(SIGTERM);
+  return service.wait() == 0 ? 0 : 6;
+}
+
+TEST(Start, WithoutAMulticastRouteItWorksOnAndSpeaksAsSoonAsThereIsOne) {
+  const std::filesystem::path dive = test::rendered_dive();
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(without_route(dive));
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "network namespaces are not allowed here";
+  EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+}  // namespace
+}  // namespace pelorus
