@@ -27,8 +27,9 @@ PublishThread::PublishThread(PublishDesk& desk, std::vector<Publisher*> publishe
 void PublishThread::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     turns_.add();
-    const Duration next = release_due();
+    Duration next = release_due();
     if (next > kRoomForAsides) send_asides();
+    for (Publisher* publisher : publishers_) next = std::min(next, publisher->tend());
     desk_.wake.wait(std::min(next, kLongestWait));
   }
   const Timestamp end = clock_.now() + kLastResults;

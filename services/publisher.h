@@ -52,6 +52,8 @@ class Publisher {
   virtual ~Publisher() = default;
   // Failure is a counter of the publisher, never an Error: the next result is more worth than this one.
   virtual void publish(const Publication& publication) = 0;
+  // Between results: what a publisher could not send at once. Returns how soon it wants to be called again.
+  [[nodiscard]] virtual Duration tend() { return std::chrono::seconds(1); }
   // For buses with room for them.
   virtual void publish_health(const HealthReport&) {}
   virtual void publish_preview(const PreviewPicture&) {}
