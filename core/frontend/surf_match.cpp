@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <tuple>
 
 #include "core/base/check.h"
-#include "core/kernels/descriptor_distance.h"
 
 namespace pelorus {
 
@@ -31,7 +32,7 @@ SurfGate temporal_gate(float radius_px) {
 }
 
 void SurfMatcher::Nearest::offer(float square, std::int32_t candidate) {
-  if (square < best) {
+  if (square < best || (square == best && candidate < index)) {
     second_best = best;
     best = square;
     index = candidate;
@@ -46,6 +47,53 @@ SurfMatcher::SurfMatcher(const SurfMatchConfig& config) : config_(config) {
   of_first_.reserve(room);
   of_second_.reserve(room);
   matches_.reserve(room);
+  order_.reserve(room);
+  blocks_.resize(room / kBlockDescriptors + 3);  // each sign may leave one block half full
+}
+
+// Ordered by Laplacian sign, then row, so that whole blocks fall outside a gate.
+void SurfMatcher::fill_blocks(std::span<const SurfPoint> second, std::span<const SurfDescriptor> descriptors) {
+  order_.resize(second.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  const auto at = [&](std::int32_t i) -> const SurfPoint& { return second[static_cast<std::size_t>(i)]; };
+  std::sort(order_.begin(), order_.end(), [&](std::int32_t a, std::int32_t b) {
+    return std::tie(at(a).laplacian, at(a).v_px, a) < std::tie(at(b).laplacian, at(b).v_px, b);
+  });
+  blocks_size_ = 0;
+  for (const std::int32_t i : order_) {
+    const bool fits = blocks_size_ > 0 && blocks_[blocks_size_ - 1].size < kBlockDescriptors &&
+                      blocks_[blocks_size_ - 1].laplacian == at(i).laplacian;
+    if (!fits) {
+      Block& fresh = blocks_[blocks_size_++];
+      fresh.size = 0;
+      fresh.laplacian = at(i).laplacian;
+      fresh.first_v_px = at(i).v_px;
+    }
+    Block& block = blocks_[blocks_size_ - 1];
+    block.descriptors.set(block.size, descriptors[static_cast<std::size_t>(i)]);
+    block.index[block.size++] = i;
+    block.last_v_px = at(i).v_px;
+  }
+}
+
+void SurfMatcher::offer_all(std::span<const SurfPoint> first, std::span<const SurfDescriptor> descriptors,
+                            std::span<const SurfPoint> second, const SurfGate& gate) {
+  BlockDistances squares{};
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    const float min_v = first[i].v_px + std::max(gate.min_dv_px, -gate.radius_px);
+    const float max_v = first[i].v_px + std::min(gate.max_dv_px, gate.radius_px);
+    for (std::size_t b = 0; b < blocks_size_; ++b) {
+      const Block& block = blocks_[b];
+      if (block.laplacian != first[i].laplacian || block.last_v_px < min_v || block.first_v_px > max_v) continue;
+      squared_distances(descriptors[i], block.descriptors, squares);
+      for (std::size_t k = 0; k < block.size; ++k) {
+        const auto j = static_cast<std::size_t>(block.index[k]);
+        if (!gate.admits(first[i], second[j])) continue;
+        of_first_[i].offer(squares[k], static_cast<std::int32_t>(j));
+        of_second_[j].offer(squares[k], static_cast<std::int32_t>(i));
+      }
+    }
+  }
 }
 
 std::span<const SurfMatch> SurfMatcher::match(std::span<const SurfPoint> first,
@@ -60,14 +108,8 @@ std::span<const SurfMatch> SurfMatcher::match(std::span<const SurfPoint> first,
   second = second.first(std::min(second.size(), room));
   of_first_.assign(first.size(), {});
   of_second_.assign(second.size(), {});
-  for (std::size_t i = 0; i < first.size(); ++i) {
-    for (std::size_t j = 0; j < second.size(); ++j) {
-      if (first[i].laplacian != second[j].laplacian || !gate.admits(first[i], second[j])) continue;
-      const float square = squared_distance(first_descriptors[i], second_descriptors[j]);
-      of_first_[i].offer(square, static_cast<std::int32_t>(j));
-      of_second_[j].offer(square, static_cast<std::int32_t>(i));
-    }
-  }
+  fill_blocks(second, second_descriptors);
+  offer_all(first, first_descriptors, second, gate);
   matches_.clear();
   for (std::size_t i = 0; i < first.size(); ++i) {
     const Nearest& nearest = of_first_[i];
@@ -76,10 +118,10 @@ std::span<const SurfMatch> SurfMatcher::match(std::span<const SurfPoint> first,
     if (back.index != static_cast<std::int32_t>(i)) continue;
     // The rival may stand on either side.
     const float rival = std::min(nearest.second_best, back.second_best);
-    const float distance = std::sqrt(nearest.best);
-    const float ratio = std::isinf(rival) || rival <= 0 ? 0.0F : distance / std::sqrt(rival);
-    if (distance > config_.max_distance || ratio > config_.max_ratio) continue;
     if (rival <= 0) continue;  // two identical partners: no telling
+    const float distance = std::sqrt(nearest.best);
+    const float ratio = std::isinf(rival) ? 0.0F : distance / std::sqrt(rival);
+    if (distance > config_.max_distance || ratio > config_.max_ratio) continue;
     matches_.push_back({static_cast<std::int32_t>(i), nearest.index, distance, ratio});
   }
   return matches_;

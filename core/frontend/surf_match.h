@@ -4,12 +4,14 @@
 // Equal distances are decided by the lower index: results depend on nothing but the input. Thread-bound.
 // O(first * second) distances at most; no allocation after construction.
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
 
 #include "core/frontend/surf.h"
+#include "core/kernels/descriptor_distance.h"
 
 namespace pelorus {
 
@@ -61,10 +63,26 @@ class SurfMatcher {
 
     void offer(float square, std::int32_t candidate);
   };
+  // Neighbours in the second image, sixteen to a block: of one Laplacian sign, from a band of rows.
+  struct Block {
+    DescriptorBlock descriptors;
+    std::array<std::int32_t, kBlockDescriptors> index{};
+    std::size_t size = 0;
+    std::int8_t laplacian = 0;
+    float first_v_px = 0;
+    float last_v_px = 0;
+  };
+
+  void fill_blocks(std::span<const SurfPoint> second, std::span<const SurfDescriptor> descriptors);
+  void offer_all(std::span<const SurfPoint> first, std::span<const SurfDescriptor> descriptors,
+                 std::span<const SurfPoint> second, const SurfGate& gate);
 
   SurfMatchConfig config_;
   std::vector<Nearest> of_first_;
   std::vector<Nearest> of_second_;
+  std::vector<std::int32_t> order_;
+  std::vector<Block> blocks_;
+  std::size_t blocks_size_ = 0;
   std::vector<SurfMatch> matches_;
 };
 

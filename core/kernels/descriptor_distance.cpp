@@ -1,7 +1,5 @@
 #include "core/kernels/descriptor_distance.h"
 
-#include <cstddef>
-
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/kernels/descriptor_distance.cpp"
 #include "hwy/foreach_target.h"
@@ -11,21 +9,21 @@ HWY_BEFORE_NAMESPACE();
 namespace pelorus::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-float squared_distance(const std::array<float, 64>& a, const std::array<float, 64>& b) {
-  const hn::CappedTag<float, 16> d;
-  alignas(64) float columns[16];
-  for (std::size_t c = 0; c < 16; c += hn::Lanes(d)) {
-    auto sum = hn::Zero(d);
-    for (std::size_t i = c; i < 64; i += 16) {
-      const auto difference = hn::Sub(hn::LoadU(d, a.data() + i), hn::LoadU(d, b.data() + i));
-      sum = hn::Add(sum, hn::Mul(difference, difference));
+void squared_distances(const std::array<float, 64>& query, const DescriptorBlock& block, BlockDistances& out) {
+  const hn::CappedTag<float, kBlockDescriptors> d;
+  for (std::size_t i = 0; i < kBlockDescriptors; i += hn::Lanes(d)) {
+    const float* element = block.element.data() + i;
+    // Four sums hide the latency of the additions.
+    auto s0 = hn::Zero(d), s1 = s0, s2 = s0, s3 = s0;
+    const auto add = [&](auto sum, std::size_t k) HWY_ATTR {
+      const auto difference = hn::Sub(hn::Set(d, query[k]), hn::Load(d, element + k * kBlockDescriptors));
+      return hn::Add(sum, hn::Mul(difference, difference));
+    };
+    for (std::size_t k = 0; k < query.size(); k += 4) {
+      s0 = add(s0, k), s1 = add(s1, k + 1), s2 = add(s2, k + 2), s3 = add(s3, k + 3);
     }
-    hn::StoreU(sum, d, columns + c);
+    hn::StoreU(hn::Add(hn::Add(s0, s1), hn::Add(s2, s3)), d, out.data() + i);
   }
-  for (std::size_t half = 8; half > 0; half /= 2) {
-    for (std::size_t c = 0; c < half; ++c) columns[c] += columns[c + half];
-  }
-  return columns[0];
 }
 
 }  // namespace pelorus::HWY_NAMESPACE
@@ -34,20 +32,22 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace pelorus {
 
-HWY_EXPORT(squared_distance);
+HWY_EXPORT(squared_distances);
 
-float squared_distance(const std::array<float, 64>& a, const std::array<float, 64>& b) {
-  return HWY_DYNAMIC_DISPATCH(squared_distance)(a, b);
+void squared_distances(const std::array<float, 64>& query, const DescriptorBlock& block, BlockDistances& out) {
+  HWY_DYNAMIC_DISPATCH(squared_distances)(query, block, out);
 }
 
 namespace reference {
-float squared_distance(const std::array<float, 64>& a, const std::array<float, 64>& b) {
-  std::array<float, 16> columns{};
-  for (std::size_t i = 0; i < 64; ++i) columns[i % 16] += (a[i] - b[i]) * (a[i] - b[i]);
-  for (std::size_t half = 8; half > 0; half /= 2) {
-    for (std::size_t c = 0; c < half; ++c) columns[c] += columns[c + half];
+void squared_distances(const std::array<float, 64>& query, const DescriptorBlock& block, BlockDistances& out) {
+  for (std::size_t i = 0; i < kBlockDescriptors; ++i) {
+    std::array<float, 4> sums{};
+    for (std::size_t k = 0; k < query.size(); ++k) {
+      const float difference = query[k] - block.element[k * kBlockDescriptors + i];
+      sums[k % 4] += difference * difference;
+    }
+    out[i] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
   }
-  return columns[0];
 }
 }  // namespace reference
 
