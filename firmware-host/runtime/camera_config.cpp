@@ -6,6 +6,9 @@
 #ifdef PELORUS_WITH_ARAVIS
 #include "drivers/aravis/aravis_camera.h"
 #endif
+#ifdef PELORUS_WITH_V4L2
+#include "drivers/v4l2/v4l2_camera.h"
+#endif
 
 namespace pelorus {
 namespace {
@@ -53,6 +56,36 @@ Result<Cameras> make_aravis([[maybe_unused]] const CameraConfig& config, [[maybe
 #endif
 }
 
+#ifdef PELORUS_WITH_V4L2
+V4l2Config v4l2_config(const CameraConfig& c, const std::string& device) {
+  V4l2Config v;
+  v.device = device;
+  if (!c.pixel_format.empty()) v.pixel_format = c.pixel_format;
+  v.width_px = c.width_px;
+  v.height_px = c.height_px;
+  v.side_by_side = c.right.empty();
+  v.rate_hz = c.rate_hz;
+  v.exposure_ms = c.exposure_ms;
+  v.readout_ms = c.readout_ms;
+  v.buffers = c.buffers;
+  return v;
+}
+#endif
+
+Result<Cameras> make_v4l2([[maybe_unused]] const CameraConfig& config, [[maybe_unused]] const CaptureClock& clock) {
+#ifdef PELORUS_WITH_V4L2
+  const char* cure = "leave it out and set it with v4l2-ctl or a udev rule";
+  if (!config.trigger.empty()) return refused("trigger", "cannot be set through V4L2", cure);
+  if (config.gain_db >= 0) return refused("gain_db", "cannot be set through V4L2, whose gains have no unit", cure);
+  Cameras cameras;
+  cameras.push_back(std::make_unique<V4l2Camera>(v4l2_config(config, config.left), clock));
+  if (!config.right.empty()) cameras.push_back(std::make_unique<V4l2Camera>(v4l2_config(config, config.right), clock));
+  return cameras;
+#else
+  return refused("left", "V4L2 is not built in", "build with -DPELORUS_WITH_V4L2=ON");
+#endif
+}
+
 }  // namespace
 
 StereoSyncConfig sync_config(const CameraConfig& config) {
@@ -63,6 +96,7 @@ Result<Cameras> make_cameras(const std::string& driver, const CameraConfig& conf
   if (config.left.empty()) return refused("left", "is not given", "name the left camera's address or device file");
   if (config.left == config.right) return refused("right", "is the left camera again", "name the other one");
   if (driver == "aravis") return make_aravis(config, clock);
+  if (driver == "v4l2") return make_v4l2(config, clock);
   return refused("left", "no driver '" + driver + "' for live cameras", "set source.kind");
 }
 

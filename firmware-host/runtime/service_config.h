@@ -13,7 +13,7 @@ namespace pelorus {
 // Where stereo pairs come from.
 struct SourceConfig {
   std::string kind = "replay";  // replay: a recorded data set; synthetic: a scene, rendered live;
-                                // aravis: GigE Vision cameras
+                                // aravis: GigE Vision cameras; v4l2: Video4Linux devices
   std::string path;             // data-set folder, or scene file
   std::string calibration;      // file that replaces the source's own; empty = its own; live cameras need one
   double rate_hz = 0;           // pairs follow each other at this rate; 0 = at their recorded times

@@ -8,7 +8,7 @@ namespace {
 
 void list(FieldList& f, SourceConfig& c) {
   f.section("source");
-  f.add("kind", c.kind, {"replay", "synthetic", "aravis"});
+  f.add("kind", c.kind, {"replay", "synthetic", "aravis", "v4l2"});
   f.add("path", c.path);
   f.add("calibration", c.calibration);
   f.add("rate_hz", c.rate_hz, 0, 1000);
@@ -30,6 +30,7 @@ void list(FieldList& f, CameraConfig& c) {
   f.add("tolerance_ms", c.tolerance_ms, 0.001, 500);
   f.add("clock", c.clock, {"free_running", "ptp"});
   f.add("stamp_at", c.stamp_at, {"exposure_start", "mid_exposure", "exposure_end"});
+  f.add("readout_ms", c.readout_ms, 0, 1000);
   f.add("packet_bytes", c.packet_bytes, 576, 16000);
   f.add("packet_socket", c.packet_socket);
   f.add("socket_buffer_mb", c.socket_buffer_mb, 0.1, 256);
@@ -101,7 +102,7 @@ std::vector<std::string> service_conflicts(const ServiceConfig& config) {
   };
   // LCM takes 63 characters; the longest of our channels adds ".VIS_COMMAND_ACK" to the vehicle.
   require(!config.lcm.vehicle.empty() && config.lcm.vehicle.size() <= 40, "lcm.vehicle must have 1 to 40 characters");
-  const bool live = config.source.kind == "aravis";
+  const bool live = config.source.kind == "aravis" || config.source.kind == "v4l2";
   require(!live || !config.camera.left.empty(), "camera.left must name a device when source.kind is a live camera");
   require(!live || !config.source.calibration.empty(), "source.calibration must name a file for live cameras");
   require(config.camera.rate_hz <= 0 || config.camera.tolerance_ms < 500 / config.camera.rate_hz,

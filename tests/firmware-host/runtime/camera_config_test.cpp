@@ -34,6 +34,17 @@ TEST(CameraConfig, RefusesWhatCannotBe) {
   EXPECT_EQ(problem_of("aravis", config), "none");
 }
 
+TEST(CameraConfig, OneV4l2DeviceIsSideBySideTwoAreNot) {
+  CameraConfig config;
+  config.left = "/dev/video0";
+  const CaptureClock clock;
+  EXPECT_EQ(make_cameras("v4l2", config, clock).value().size(), 1U);
+  config.right = "/dev/video1";
+  EXPECT_EQ(make_cameras("v4l2", config, clock).value().size(), 2U);
+  config.trigger = "Line1";
+  EXPECT_NE(problem_of("v4l2", config).find("camera.trigger"), std::string::npos);
+}
+
 TEST(CameraConfig, PairsAsConfigured) {
   CameraConfig config;
   EXPECT_EQ(sync_config(config).pair_by, PairBy::time);
