@@ -45,6 +45,8 @@ FrontEnd::FrontEnd(const FrontEndConfig& config, const StereoRig& rig)
   work_tasks_.reserve(capacity);
   work_of_.reserve(capacity);
   starts_.reserve(capacity);
+  lost_points_.reserve(capacity);
+  lost_descriptors_.reserve(capacity);
   descriptors_.reserve(static_cast<std::size_t>(config.surf.max_points));
   stereo_tasks_.reserve(capacity);
 }
