@@ -57,7 +57,7 @@ void place_of_header(std::string& out, const char* prefix, const CanFrameSpec& s
 
 std::string number_text(double value) {
   char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
+  std::snprintf(text, sizeof text, "%.10g", value);
   return text;
 }
 
