@@ -65,7 +65,7 @@
 #define PELORUS_CAN_TIME_LATENCY_BYTE 4u
 #define PELORUS_CAN_TIME_LATENCY_SCALE 0.0001f
 #define PELORUS_CAN_TIME_LATENCY_US 100u
-/* One standard deviation of DX DY DZ, worst axis. uint8, 1e-05 m * 2^(raw/16), rounded up; 254: 0.60096777 m or more; invalid: 0xFF. */
+/* One standard deviation of DX DY DZ, worst axis. uint8, 1e-05 m * 2^(raw/16), rounded up; 254: 0.6009677698 m or more; invalid: 0xFF. */
 #define PELORUS_CAN_TIME_SIGMA_STEP_BYTE 6u
 #define PELORUS_CAN_TIME_SIGMA_STEP_SCALE 1e-05f
 /* Moving bodies tracked now; 254 or more: 254. uint8, 0..254; invalid: 0xFF. */
@@ -115,7 +115,7 @@
 /* Position since start, + down at start (body z then, NOT gravity). int24, 0.01 m per step, +-83886.07 m; invalid: 0x800000. */
 #define PELORUS_CAN_ABS_Z_Z_BYTE 2u
 #define PELORUS_CAN_ABS_Z_Z_SCALE 0.01f
-/* One standard deviation of X Y Z, worst axis; grows with the dive. uint8, 0.001 m * 2^(raw/16), rounded up; 254: 60.096777 m or more; invalid: 0xFF. */
+/* One standard deviation of X Y Z, worst axis; grows with the dive. uint8, 0.001 m * 2^(raw/16), rounded up; 254: 60.09677698 m or more; invalid: 0xFF. */
 #define PELORUS_CAN_ABS_Z_SIGMA_POS_BYTE 5u
 #define PELORUS_CAN_ABS_Z_SIGMA_POS_SCALE 0.001f
 /* Estimates dropped by the sender because an older one was still waiting for the bus. uint16, 0..65535; invalid: none. */
@@ -124,7 +124,7 @@
 /* VIS_NODE: Who is speaking */
 #define PELORUS_CAN_NODE_OFFSET 8u
 #define PELORUS_CAN_NODE_SIZE 8u
-/* Hash of the calibration in force; 0 = not told. uint32, 0..4.2949673e+09; invalid: none. */
+/* Hash of the calibration in force; 0 = not told. uint32, 0..4294967295; invalid: none. */
 #define PELORUS_CAN_NODE_CALIBRATION_BYTE 2u
 /* Version of this contract. uint8, 0..255; invalid: none. */
 #define PELORUS_CAN_NODE_VERSION_BYTE 6u
@@ -140,10 +140,10 @@
 #define PELORUS_CAN_QUAL_AGE_BYTE 4u
 #define PELORUS_CAN_QUAL_AGE_SCALE 0.0001f
 #define PELORUS_CAN_QUAL_AGE_US 100u
-/* One standard deviation of VX VY VZ, worst axis. uint8, 0.0001 m/s * 2^(raw/16), rounded up; 254: 6.0096777 m/s or more; invalid: 0xFF. */
+/* One standard deviation of VX VY VZ, worst axis. uint8, 0.0001 m/s * 2^(raw/16), rounded up; 254: 6.009677698 m/s or more; invalid: 0xFF. */
 #define PELORUS_CAN_QUAL_SIGMA_VEL_BYTE 6u
 #define PELORUS_CAN_QUAL_SIGMA_VEL_SCALE 0.0001f
-/* One standard deviation of the attitude, worst axis; grows with the dive. uint8, 1e-05 rad * 2^(raw/16), rounded up; 254: 0.60096777 rad or more; invalid: 0xFF. */
+/* One standard deviation of the attitude, worst axis; grows with the dive. uint8, 1e-05 rad * 2^(raw/16), rounded up; 254: 0.6009677698 rad or more; invalid: 0xFF. */
 #define PELORUS_CAN_QUAL_SIGMA_ATT_BYTE 7u
 #define PELORUS_CAN_QUAL_SIGMA_ATT_SCALE 1e-05f
 
@@ -156,13 +156,13 @@
 #define PELORUS_CAN_FD_SLOW_Y_BYTE 8u
 /* Position since start, + down at start (body z then, NOT gravity). binary32, m; invalid: NaN. */
 #define PELORUS_CAN_FD_SLOW_Z_BYTE 12u
-/* Hash of the calibration in force; 0 = not told. uint32, 0..4.2949673e+09; invalid: none. */
+/* Hash of the calibration in force; 0 = not told. uint32, 0..4294967295; invalid: none. */
 #define PELORUS_CAN_FD_SLOW_CALIBRATION_BYTE 16u
 /* Declared latency from mid-exposure to sending: the autopilot's delay parameter. int16, 0.0001 s per step, +-3.2767 s; invalid: 0x8000. */
 #define PELORUS_CAN_FD_SLOW_LATENCY_BYTE 20u
 #define PELORUS_CAN_FD_SLOW_LATENCY_SCALE 0.0001f
 #define PELORUS_CAN_FD_SLOW_LATENCY_US 100u
-/* One standard deviation of X Y Z, worst axis; grows with the dive. uint8, 0.001 m * 2^(raw/16), rounded up; 254: 60.096777 m or more; invalid: 0xFF. */
+/* One standard deviation of X Y Z, worst axis; grows with the dive. uint8, 0.001 m * 2^(raw/16), rounded up; 254: 60.09677698 m or more; invalid: 0xFF. */
 #define PELORUS_CAN_FD_SLOW_SIGMA_POS_BYTE 22u
 #define PELORUS_CAN_FD_SLOW_SIGMA_POS_SCALE 0.001f
 /* Version of this contract. uint8, 0..255; invalid: none. */
@@ -236,7 +236,7 @@
 #define PELORUS_CAN_FD_CONFIDENCE_BYTE 60u
 /* Nearest moving body: its identity modulo 255; a change is another body. uint8, 0..254; invalid: 0xFF. */
 #define PELORUS_CAN_FD_ID_BYTE 61u
-/* One standard deviation of the attitude, worst axis; grows with the dive. uint8, 1e-05 rad * 2^(raw/16), rounded up; 254: 0.60096777 rad or more; invalid: 0xFF. */
+/* One standard deviation of the attitude, worst axis; grows with the dive. uint8, 1e-05 rad * 2^(raw/16), rounded up; 254: 0.6009677698 rad or more; invalid: 0xFF. */
 #define PELORUS_CAN_FD_SIGMA_ATT_BYTE 62u
 #define PELORUS_CAN_FD_SIGMA_ATT_SCALE 1e-05f
 /* Moving bodies tracked now; 254 or more: 254. uint8, 0..254; invalid: 0xFF. */
