@@ -10,7 +10,7 @@ import re
 import sys
 
 # Layers of core, lowest first: a folder may include itself and everything to its left.
-CORE_CHAIN = ["base", "geometry", "kernels", "model", "frontend", "motion", "refine", "objects", "pipeline"]
+CORE_CHAIN = ["base", "kernels", "geometry", "model", "frontend", "motion", "refine", "objects", "pipeline"]
 SOURCE_FOLDERS = ["core", "drivers", "services", "firmware-host", "tests"]
 ALLOWED = {
     **{f"core/{name}": {f"core/{lower}" for lower in CORE_CHAIN[: i + 1]} for i, name in enumerate(CORE_CHAIN)},

@@ -104,6 +104,7 @@ RemapTable build_table(const LensModel& lens, const Eigen::Matrix3d& R_cam_raw, 
       if (lens.project(R_raw_cam * v_cam, raw_px)) table.set(u, v, raw_px);
     }
   }
+  table.finish();
   return table;
 }
 

@@ -47,6 +47,14 @@ Rectifier make(const StereoCalibration& c, const RectifierConfig& config = {}) {
   return made.value();
 }
 
+Image noise_image(int width, int height) {
+  std::mt19937 rng(4);
+  Image image(width, height);
+  for (int v = 0; v < height; ++v)
+    for (int u = 0; u < width; ++u) image.row(v)[u] = static_cast<std::uint8_t>(rng());
+  return image;
+}
+
 cv::Mat to_cv(const Eigen::MatrixXd& m) {
   cv::Mat out(static_cast<int>(m.rows()), static_cast<int>(m.cols()), CV_64F);
   for (int i = 0; i < out.rows; ++i)
@@ -143,6 +151,57 @@ TEST(Rectifier, WarpsAnImageAsOpenCvDoes) {
       worst =
           std::max(worst, std::abs(static_cast<int>(out.row(v)[u]) - static_cast<int>(oracle.at<std::uint8_t>(v, u))));
   EXPECT_LE(worst, 1);  // OpenCV's weights have 5 bits, ours 7
+}
+
+// A pixel by definition, from the table's own positions (multiples of 1/128 px).
+int mixed(const RemapTable& table, const Image& raw, int u, int v) {
+  if (!table.covered(u, v)) return 0;
+  const Eigen::Vector2d p = table.raw_px(u, v);
+  const int x = std::min(static_cast<int>(p.x()), raw.width() - 2);
+  const int y = std::min(static_cast<int>(p.y()), raw.height() - 2);
+  const int a = static_cast<int>(std::lround((p.x() - x) * 128));
+  const int b = static_cast<int>(std::lround((p.y() - y) * 128));
+  const std::uint8_t* upper = raw.row(y) + x;
+  const std::uint8_t* lower = raw.row(y + 1) + x;
+  const int top = upper[0] * (128 - a) + upper[1] * a;
+  const int bottom = lower[0] * (128 - a) + lower[1] * a;
+  return (top * (128 - b) + bottom * b + 8192) >> 14;
+}
+
+int wrong_pixels(const RemapTable& table, const Image& raw) {
+  Image out;
+  table.apply(raw.view(), out);
+  int wrong = 0;
+  for (int v = 0; v < table.height(); ++v)
+    for (int u = 0; u < table.width(); ++u) wrong += out.row(v)[u] != mixed(table, raw, u, v);
+  return wrong;
+}
+
+TEST(Rectifier, BlocksAndSinglePixelsMixTheSameWay) {
+  const Image raw = noise_image(752, 480);
+  for (const double alpha : {0.0, 1.0}) {
+    for (const StereoCalibration& c : {euroc(), fisheye()}) {
+      const Rectifier rectifier = make(c, {.alpha = alpha});
+      EXPECT_EQ(wrong_pixels(rectifier.left_table(), raw), 0);
+      EXPECT_EQ(wrong_pixels(rectifier.right_table(), raw), 0);
+    }
+  }
+  // All of EuRoC's pixels come in blocks.
+  EXPECT_GT(make(euroc()).left_table().blocks(), 752U * 480U / 8U * 99U / 100U);
+}
+
+TEST(Rectifier, TurnsTooSteepForBlocksAndNarrowTablesWorkToo) {
+  const Image raw = noise_image(100, 80);
+  for (const int width : {3, 8, 13, 60}) {
+    for (const double slope : {0.0, 0.1, 1.0}) {
+      RemapTable table(width, 20, 100, 80);
+      for (int v = 0; v < 20; ++v)
+        for (int u = 0; u < width; ++u) table.set(u, v, {1.3 * u + 0.4 * v - 2, 0.9 * v + slope * u + 70 - 50 * slope});
+      EXPECT_EQ(wrong_pixels(table, raw), 0) << "before finish()";
+      table.finish();
+      EXPECT_EQ(wrong_pixels(table, raw), 0);
+    }
+  }
 }
 
 TEST(Rectifier, FillsTheImageWithoutBlackBorders) {
