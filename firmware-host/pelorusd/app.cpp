@@ -187,7 +187,11 @@ void App::report_health() {
   report.host = p.host.read();
   report.version = PELORUS_VERSION;
   report.recorder_text = "off";
-  report.can_text = "off";
+  report.can_text =
+      p.service->can ? status_text(p.service->can->status(), p.service->config.can.interface) : std::string("off");
+  if (p.service->can && !p.service->can->status().trouble.empty()) {
+    p.log.limited(LogLevel::warning, "can", p.service->can->status().trouble, now);
+  }
   report.config_hash = p.service->config_fingerprint;
   report.calibration_hash = p.service->calibration_fingerprint;
   std::array<char, 160> status{};

@@ -1,5 +1,7 @@
 #include "firmware-host/pelorusd/service_threads.h"
 
+#include <cstdint>
+
 #include "firmware-host/pelorusd/mounting.h"
 #include "firmware-host/runtime/process_setup.h"
 #include "firmware-host/runtime/settings_hash.h"
@@ -51,6 +53,13 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
   if (config.lcm.enabled) {
     lcm = std::make_unique<LcmPublisher>(config.lcm, T_body_cam);
     publishers.push_back(lcm.get());
+  }
+  if (config.can.enabled) {
+    const Duration latency(static_cast<std::int64_t>(config.timing.latency_ms * 1e6));
+    // The wire has room for 32 bits of the fingerprint.
+    const auto hash = static_cast<std::uint32_t>(std::stoull(calibration_fingerprint, nullptr, 16));
+    can = std::make_unique<CanPublisher>(config.can, T_body_cam, latency, hash);
+    publishers.push_back(can.get());
   }
   publishing =
       std::make_unique<PublishThread>(desk, publishers, config.timing, clock, prepared("publish", ThreadClass::normal));

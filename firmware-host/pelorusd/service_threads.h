@@ -10,6 +10,7 @@
 
 #include "firmware-host/pelorusd/stereo_head.h"
 #include "firmware-host/runtime/log_sink.h"
+#include "services/can/can_publisher.h"
 #include "services/command_listener.h"
 #include "services/lcm_publisher.h"
 #include "services/publish_thread.h"
@@ -33,6 +34,7 @@ struct ServiceThreads {
   VisionControl control;
   std::vector<Publisher*> publishers;
   std::unique_ptr<LcmPublisher> lcm;  // absent when off
+  std::unique_ptr<CanPublisher> can;  // absent when off
   std::unique_ptr<PublishThread> publishing;
   std::unique_ptr<Preview> preview;
   std::unique_ptr<Vision> vision;  // absent once the recording is at its end

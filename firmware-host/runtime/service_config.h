@@ -6,6 +6,7 @@
 
 #include "core/pipeline/config.h"
 #include "firmware-host/runtime/camera_config.h"
+#include "services/can/can_settings.h"
 #include "services/service_settings.h"
 
 namespace pelorus {
@@ -27,6 +28,7 @@ struct ServiceConfig {
   MountingConfig mounting;
   CaptureWatchConfig capture;
   LcmConfig lcm;
+  CanConfig can;
   ProcessConfig process;
   PipelineConfig pipeline;
 };

@@ -71,6 +71,17 @@ void list(FieldList& f, ProcessConfig& c) {
   f.add("lock_memory", c.lock_memory);
 }
 
+void list(FieldList& f, CanConfig& c) {
+  f.section("can");
+  f.add("enabled", c.enabled);
+  f.add("interface", c.interface);
+  f.add("fd", c.fd);
+  f.add("bit_rate_switch", c.bit_rate_switch);
+  f.add("base_id", c.base_id, 0, 0x7FF - 11);
+  f.add("slow_every", c.slow_every, 1, 1000);
+  f.add("retry_ms", c.retry_ms, 10, 60000);
+}
+
 void list(FieldList& f, LcmConfig& c) {
   f.section("lcm");
   f.add("enabled", c.enabled);
@@ -91,6 +102,7 @@ std::vector<ConfigField> service_fields(ServiceConfig& config) {
   list(fields, config.mounting);
   list(fields, config.capture);
   list(fields, config.lcm);
+  list(fields, config.can);
   list(fields, config.process);
   return fields.take();
 }

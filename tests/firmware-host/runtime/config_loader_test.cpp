@@ -167,6 +167,7 @@ TEST(ServiceFields, HoldEveryMemberOfEveryStruct) {
       {"timing", member_count<TimingConfig>()},
       {"capture", member_count<CaptureWatchConfig>()},
       {"lcm", member_count<LcmConfig>()},
+      {"can", member_count<CanConfig>()},
       {"mounting", member_count<MountingConfig>()},
       {"process", member_count<ProcessConfig>()},
   };
