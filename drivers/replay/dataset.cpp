@@ -3,6 +3,8 @@
 #include "drivers/replay/euroc.h"
 #include "drivers/replay/image_file.h"
 #include "drivers/replay/kitti.h"
+#include "drivers/replay/lcm_event_file.h"
+#include "drivers/replay/lcm_log.h"
 
 namespace pelorus {
 namespace {
@@ -131,6 +133,7 @@ Result<Recording> list_recording(const fs::path& path) {
 
 Result<std::unique_ptr<StereoSource>> open_dataset(const fs::path& path,
                                                    const std::optional<LoadedCalibration>& given) {
+  if (LcmEventFile::is_log(path)) return open_lcm_log(path, given);
   auto recording = list_recording(path);
   if (!recording) return recording.error();
   auto calibration = choose_calibration(recording.value(), given);

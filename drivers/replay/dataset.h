@@ -1,5 +1,6 @@
 #pragma once
-// open_dataset: recorded stereo frames as a StereoSource, whatever the layout (EuRoC ASL, KITTI odometry, KITTI raw).
+// open_dataset: recorded stereo frames as a StereoSource, whatever the layout (EuRoC ASL, KITTI odometry, KITTI raw,
+// LCM log with bot_core.images_t).
 //
 // Losses and errors: an image that is not there, on either side, costs its pair: seq has a gap, description()
 // counts it. An image that cannot be decoded or has the wrong size is an Error of next(); the following next() goes

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "core/base/image.h"
@@ -19,5 +20,8 @@ class ImageFile {
  private:
   std::vector<std::uint8_t> bytes_;
 };
+
+// A picture file's content already in memory; `place` goes into the Error.
+[[nodiscard]] Result<> decode_picture(const std::vector<std::uint8_t>& bytes, const std::string& place, Image& out);
 
 }  // namespace pelorus

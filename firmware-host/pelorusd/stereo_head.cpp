@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "drivers/replay/lcm_event_file.h"
 #include "drivers/source_camera.h"
 #include "firmware-host/runtime/calibration.h"
 #include "firmware-host/runtime/replay_source.h"
@@ -29,8 +30,9 @@ Result<> StereoHead::prepare_source(const SourceConfig& source, const CaptureClo
     return Error{ErrorCode::bad_configuration, source.path, "is a folder, source.kind says synthetic",
                  "give a scene file, or write kind: replay"};
   }
-  if (source.kind == "replay" && !folder) {
-    return Error{ErrorCode::bad_input, source.path, "is no folder of recorded pairs", "check source.path"};
+  if (source.kind == "replay" && !folder && !LcmEventFile::is_log(source.path)) {
+    return Error{ErrorCode::bad_input, source.path, "is no folder of recorded pairs and no LCM log",
+                 "check source.path"};
   }
   // Opened once here, so that a wrong path or calibration ends the start with its own message.
   Result<std::unique_ptr<StereoSource>> first = open_source(source.path, source.calibration);

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "drivers/replay/dataset.h"
+#include "drivers/replay/lcm_event_file.h"
 #include "drivers/synthetic/scene_file.h"
 #include "drivers/synthetic/synthetic_source.h"
 #include "firmware-host/runtime/calibration.h"
@@ -25,7 +26,7 @@ Result<std::unique_ptr<StereoSource>> open_scene(const std::string& name) {
 Result<std::unique_ptr<StereoSource>> open_source(const std::string& dataset, const std::string& calibration_file) {
   std::error_code ignored;
   // Whatever has a path separator and is no file is meant as a folder: its error says more than the scenes' one.
-  const bool scene = !std::filesystem::is_directory(dataset, ignored) &&
+  const bool scene = !LcmEventFile::is_log(dataset) && !std::filesystem::is_directory(dataset, ignored) &&
                      (dataset.find('/') == std::string::npos || std::filesystem::is_regular_file(dataset, ignored));
   if (scene && calibration_file.empty()) return open_scene(dataset);
   if (scene)
