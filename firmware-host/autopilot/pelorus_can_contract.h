@@ -179,10 +179,10 @@
 #define PELORUS_CAN_FD_AGE_BYTE 4u
 #define PELORUS_CAN_FD_AGE_SCALE 0.0001f
 #define PELORUS_CAN_FD_AGE_US 100u
-/* Time that DX DY DZ span, up to this measurement: since the estimate with COUNTER - 1 if it had QUALITY > 0. int16, 0.0001 s per step, +-3.2767 s; invalid: 0x8000. */
+/* Time that DX DY DZ span, up to this measurement: since the estimate with COUNTER - 1 if it had QUALITY > 0. uint16, 2e-05 s per step, 0..1.31068 s; invalid: 0xFFFF. */
 #define PELORUS_CAN_FD_INTERVAL_BYTE 6u
-#define PELORUS_CAN_FD_INTERVAL_SCALE 0.0001f
-#define PELORUS_CAN_FD_INTERVAL_US 100u
+#define PELORUS_CAN_FD_INTERVAL_SCALE 2e-05f
+#define PELORUS_CAN_FD_INTERVAL_US 20u
 /* 0 no valid estimate, 1 worst .. 100 best. uint8, 0..254 %; invalid: 0xFF. */
 #define PELORUS_CAN_FD_QUALITY_BYTE 8u
 /* Goes up by one after each loss of tracking: position and attitude may have jumped, do not difference across it. uint8, 0..255; invalid: none. */

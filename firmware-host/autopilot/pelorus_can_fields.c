@@ -17,7 +17,6 @@ static float float_of(uint32_t bits) {
 static float not_a_number(void) { return float_of(UINT32_C(0x7FC00000)); }
 
 static uint32_t u16_at(const uint8_t* p) { return (uint32_t)p[0] | (uint32_t)p[1] << 8; }
-
 static uint32_t u32_at(const uint8_t* p) { return u16_at(p) | u16_at(p + 2) << 16; }
 
 static bool read_i16(const uint8_t* p, float scale, float* out) {
@@ -234,22 +233,24 @@ static void derive_velocity(pelorus_can_estimate* e) {
 }
 
 static void read_fd_motion(pelorus_can_estimate* e, const uint8_t* p, bool step_usable) {
-  mark(
-      e,
-      read_i16(p + PELORUS_CAN_FD_INTERVAL_BYTE, PELORUS_CAN_FD_INTERVAL_SCALE, &e->interval_s) && e->interval_s > 0.0f,
-      PELORUS_CAN_INTERVAL);
-  if (!read_3_f16(p + PELORUS_CAN_FD_VAR_DX_BYTE, 1e-6f, e->step_variance_m2) ||
-      !read_3_f16(p + PELORUS_CAN_FD_VAR_RX_BYTE, 1e-6f, e->turn_variance_rad2) ||
-      !read_3_f32(p + PELORUS_CAN_FD_DX_BYTE, e->step_m) || !read_3_f32(p + PELORUS_CAN_FD_RX_BYTE, e->turn_rad)) {
-    return;
+  const uint32_t interval = u16_at(p + PELORUS_CAN_FD_INTERVAL_BYTE);
+  const bool known = read_3_f16(p + PELORUS_CAN_FD_VAR_DX_BYTE, 1e-6f, e->step_variance_m2) &&
+                     read_3_f16(p + PELORUS_CAN_FD_VAR_RX_BYTE, 1e-6f, e->turn_variance_rad2) &&
+                     read_3_f32(p + PELORUS_CAN_FD_DX_BYTE, e->step_m) &&
+                     read_3_f32(p + PELORUS_CAN_FD_RX_BYTE, e->turn_rad);
+  if (interval > 0 && interval < 0xFFFFu) {
+    e->interval_s = (float)interval * PELORUS_CAN_FD_INTERVAL_SCALE;
+    e->valid |= PELORUS_CAN_INTERVAL;
   }
-  derive_velocity(e);
-  if (step_usable) {
+  if (known) derive_velocity(e);
+  if (known && step_usable) {
     e->valid |= PELORUS_CAN_STEP | PELORUS_CAN_TURN;
     return;
   }
   fill(e->step_m, 3, not_a_number());
   fill(e->turn_rad, 3, not_a_number());
+  fill(e->step_variance_m2, 3, not_a_number());
+  fill(e->turn_variance_rad2, 3, not_a_number());
 }
 
 static void read_fd_slow(const pelorus_can_receiver* rx, pelorus_can_estimate* e) {
@@ -260,10 +261,12 @@ static void read_fd_slow(const pelorus_can_receiver* rx, pelorus_can_estimate* e
   e->sender_dropped = (uint16_t)u16_at(p + PELORUS_CAN_FD_SLOW_DROPPED_BYTE);
   e->valid |= PELORUS_CAN_NODE;
   (void)read_i16(p + PELORUS_CAN_FD_SLOW_LATENCY_BYTE, PELORUS_CAN_FD_SLOW_LATENCY_SCALE, &e->latency_s);
-  if (is_usable(e) && read_variance(p[PELORUS_CAN_FD_SLOW_SIGMA_POS_BYTE], PELORUS_CAN_FD_SLOW_SIGMA_POS_SCALE,
-                                    &e->position_variance_m2)) {
-    mark(e, read_3_f32(p + PELORUS_CAN_FD_SLOW_X_BYTE, e->position_m), PELORUS_CAN_POSITION);
-  }
+  mark(e,
+       is_usable(e) && p[PELORUS_CAN_FD_SLOW_SIGMA_POS_BYTE] != NOT_KNOWN &&
+           read_3_f32(p + PELORUS_CAN_FD_SLOW_X_BYTE, e->position_m) &&
+           read_variance(p[PELORUS_CAN_FD_SLOW_SIGMA_POS_BYTE], PELORUS_CAN_FD_SLOW_SIGMA_POS_SCALE,
+                         &e->position_variance_m2),
+       PELORUS_CAN_POSITION);
 }
 
 static void read_fd(const pelorus_can_receiver* rx, pelorus_can_estimate* e, bool step_usable) {

@@ -38,7 +38,8 @@ void header_of(std::string& out, const CanFrameSpec& spec) {
     out += "/* " + std::string(signal.meaning) + ". " + signal_range_text(signal) +
            "; invalid: " + signal_invalid_text(signal) + ". */\n";
     line(out, name + "_BYTE", std::to_string(signal.start_bit / 8) + "u");
-    const bool scaled = signal.coding == CanCoding::log_sigma || signal.coding == CanCoding::signed_integer;
+    const bool scaled =
+        signal.coding == CanCoding::log_sigma || signal.coding == CanCoding::signed_integer || signal.scale != 1;
     if (scaled) line(out, name + "_SCALE", float_literal(signal.scale));
     if (scaled && std::string(signal.unit) == "s") {
       line(out, name + "_US", std::to_string(std::lround(signal.scale * 1e6)) + "u");
@@ -71,8 +72,9 @@ std::string signal_range_text(const CanSignal& signal) {
     }
     case CanCoding::unsigned_integer: {
       const double codes = std::ldexp(1.0, signal.bits);
-      const double most = signal.beyond == CanBeyond::wraps ? codes - 1 : codes - 2;
-      return "uint" + std::to_string(signal.bits) + ", 0.." + number_text(most) + unit;
+      const double most = (signal.beyond == CanBeyond::wraps ? codes - 1 : codes - 2) * signal.scale;
+      const std::string step = signal.scale == 1 ? "" : number_text(signal.scale) + unit + " per step, ";
+      return "uint" + std::to_string(signal.bits) + ", " + step + "0.." + number_text(most) + unit;
     }
     case CanCoding::log_sigma:
       return "uint8, " + number_text(signal.scale) + unit +

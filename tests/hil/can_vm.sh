@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # The CAN output on the kernel's own SocketCAN (vcan, classic and FD) in a virtual machine: what candump (read with the DBC
 # by canmatrix) and the autopilot's receiver see is compared with the LCM messages of the same results; then interfaces
-# that are absent, down, removed or slow. A boot that hangs is tried again. Needs can-utils, python3-canmatrix.
+# that are absent, down, removed or slow. Needs can-utils, kmod,
+# python3-canmatrix and, once, the package user-mode-linux.
 # usage: can_vm.sh [BUILD_FOLDER [FOLDER_FOR_RECORDINGS]]
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -15,12 +16,5 @@ for tool in candump tc; do
     exit 77
   }
 done
-for attempt in 1 2; do
-  code=0
-  "$here/guest.sh" -t 300 -o "$out" -m sch_netem -- \
-    "$here/can_guest.sh" "$root/build/bin" "$build/tests" /out || code=$?
-  [ "$code" = 124 ] || [ "$code" = 125 ] || break
-  echo "can_vm.sh: the guest did not come up (attempt $attempt)" >&2
-done
-[ "$code" = 0 ] || exit "$code"
+"$here/uml.sh" -t 150 -m sch_tbf -o "$out" -- "$here/can_guest.sh" "$root/build/bin" "$build/tests" "$out"
 /usr/bin/python3 "$here/can_check.py" "$root" "$out"

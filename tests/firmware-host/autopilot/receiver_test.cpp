@@ -263,6 +263,32 @@ TEST_P(Receiver, EachInvalidFieldTakesOnlyItsOwnValueAway) {
   EXPECT_TRUE(link.latest()->valid & PELORUS_CAN_ATTITUDE);
 }
 
+// Whatever is not vouched for cannot be used by mistake.
+TEST_P(Receiver, AFieldWithoutItsBitIsNoNumber) {
+  const auto is_nan_3 = [](const float(&v)[3]) { return std::isnan(v[0]) && std::isnan(v[1]) && std::isnan(v[2]); };
+  for (const CanFrameSpec& spec : can_contract()) {
+    for (const CanSignal& signal : spec.signals) {
+      if (signal.field == nullptr || signal.beyond == CanBeyond::wraps) continue;
+      Link link(GetParam());
+      link.bring_up();
+      CanEstimate e = steady_estimate();
+      e.*signal.field = kCanUnknown;
+      (void)link.send_next(e, true);
+      const pelorus_can_estimate* seen = link.latest();
+      ASSERT_NE(seen, nullptr);
+      const auto lacks = [&](unsigned bit) { return (seen->valid & bit) == 0; };
+      EXPECT_EQ(lacks(PELORUS_CAN_VELOCITY), is_nan_3(seen->velocity_mps)) << spec.name << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_STEP), is_nan_3(seen->step_m)) << spec.name << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_STEP), is_nan_3(seen->step_variance_m2)) << spec.name << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_TURN), is_nan_3(seen->turn_rad)) << spec.name << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_POSITION), is_nan_3(seen->position_m)) << spec.name << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_ATTITUDE), std::isnan(seen->roll_rad) && std::isnan(seen->yaw_rad)) << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_BODY), std::isnan(seen->body_range_m)) << spec.name << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_BODY_CLOSING), std::isnan(seen->body_closing_mps)) << spec.name << signal.name;
+    }
+  }
+}
+
 TEST_P(Receiver, AResetIsToldUntilItWasHandedOut) {
   Link link(GetParam());
   link.bring_up();
