@@ -15,6 +15,13 @@ namespace {
 constexpr int kHighPriority = 40;
 constexpr int kMiddlePriority = 30;
 constexpr int kBackgroundNice = 10;
+constexpr std::size_t kTouchedStack = 512 * 1024;
+
+// Touches the stack that a real-time thread will use, so that no page of it has to be found later.
+void touch_stack() {
+  volatile char stack[kTouchedStack];
+  for (std::size_t i = 0; i < sizeof stack; i += 4096) stack[i] = 0;
+}
 
 }  // namespace
 
@@ -24,7 +31,9 @@ std::string lock_memory() {
   if (limit.rlim_cur != RLIM_INFINITY && ::geteuid() != 0) {
     return "the limit of locked memory is " + std::to_string(limit.rlim_cur >> 10) + " kB (LimitMEMLOCK=infinity)";
   }
-  if (::mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return "";
+  // On fault: what was touched stays. All at once would also load 200 MB of libraries that the picture decoders'
+  // package brings and nobody calls (321 MB resident in place of 122 MB).
+  if (::mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0) return "";
   return std::strerror(errno);
 }
 
@@ -35,6 +44,7 @@ std::string set_thread(const char* name, ThreadClass wanted) {
     // On Linux the nice value is the thread's own.
     return ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kBackgroundNice) == 0 ? "" : std::strerror(errno);
   }
+  touch_stack();
   sched_param parameters{};
   parameters.sched_priority = wanted == ThreadClass::fifo_high ? kHighPriority : kMiddlePriority;
   const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
