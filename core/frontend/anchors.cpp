@@ -54,27 +54,35 @@ void FrontEnd::refine_by_reference() {
 // patch on a slanted sea floor is sheared by the vehicle's motion, and a tracker that does not know it drifts.
 void FrontEnd::measure_slopes() {
   const double radius2 = config_.slope_radius_px * config_.slope_radius_px;
+  by_column_.clear();
   for (std::size_t i = 0; i < pairs_.size(); ++i) {
-    Track& track = tracks_[track_of_pair_[i]];
-    const Eigen::Vector3d& z_px = track.latest.z_px;
-    const double disparity_px = z_px.x() - z_px.z();
+    const Track& track = tracks_[track_of_pair_[i]];
+    by_column_.push_back({track.latest.z_px.head<2>(), track.latest.z_px.x() - track.latest.z_px.z(), track.body, i});
+  }
+  // Neighbours lie in a strip of columns then.
+  std::sort(by_column_.begin(), by_column_.end(), [](const SlopePoint& a, const SlopePoint& b) {
+    return a.px.x() != b.px.x() ? a.px.x() < b.px.x() : a.pair < b.pair;
+  });
+  auto first = by_column_.cbegin();
+  for (const SlopePoint& point : by_column_) {
+    while (first->px.x() <= point.px.x() - config_.slope_radius_px) ++first;
     Eigen::Matrix2d A = Eigen::Matrix2d::Identity() * 50.0;  // pulls towards "faces the camera" when neighbours are few
     Eigen::Vector2d b = Eigen::Vector2d::Zero();
     int count = 0;
-    for (const PointPair& other : pairs_) {
-      const Eigen::Vector2d offset = other.curr.z_px.head<2>() - z_px.head<2>();
+    for (auto other = first; other != by_column_.cend(); ++other) {
+      const Eigen::Vector2d offset = other->px - point.px;
+      if (offset.x() >= config_.slope_radius_px) break;
       const double distance2 = offset.squaredNorm();
-      if (distance2 >= radius2 || distance2 < 1.0) continue;
-      const Track& neighbour = tracks_[track_of_pair_[static_cast<std::size_t>(&other - pairs_.data())]];
-      if (neighbour.body != track.body) continue;
-      const double change_px = other.curr.z_px.x() - other.curr.z_px.z() - disparity_px;
+      if (distance2 >= radius2 || distance2 < 1.0 || other->body != point.body) continue;
+      const double change_px = other->disparity_px - point.disparity_px;
       if (std::abs(change_px) > config_.max_slope * std::sqrt(distance2)) continue;  // across an edge
       const double weight = 1.0 - distance2 / radius2;
       A += weight * offset * offset.transpose();
       b += weight * offset * change_px;
       ++count;
     }
-    if (count >= 3) track.disparity_gradient = A.inverse() * b;  // else as the stereo match of its birth told
+    // Else as the stereo match of its birth told.
+    if (count >= 3) tracks_[track_of_pair_[point.pair]].disparity_gradient = A.inverse() * b;
   }
 }
 

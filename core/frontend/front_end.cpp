@@ -45,6 +45,7 @@ FrontEnd::FrontEnd(const FrontEndConfig& config, const StereoRig& rig)
   work_tasks_.reserve(capacity);
   work_of_.reserve(capacity);
   starts_.reserve(capacity);
+  by_column_.reserve(capacity);
   lost_points_.reserve(capacity);
   lost_descriptors_.reserve(capacity);
   descriptors_.reserve(static_cast<std::size_t>(config.surf.max_points));
@@ -88,7 +89,7 @@ void FrontEnd::carry_left(std::span<const BodyPrediction> predictions) {
     task.warp = step_warp(rig_, H_curr_prev, track.latest.p_cam, track.disparity_gradient);
     left_tasks_.push_back(task);
   }
-  klt_.track(images_.previous(), images_.current(), left_tasks_, KltSearch::plane, kPredictedStartLevel);
+  klt_.track(images_.previous(), images_.current(), left_tasks_, KltSearch::plane, kPredictedStartLevel, true);
 }
 
 // Points that the prediction led astray get a second search from where they were, from the coarsest level.
@@ -188,7 +189,7 @@ void FrontEnd::carry_right(std::span<const BodyPrediction> predictions) {
     work_tasks_.push_back(task);
     work_of_.push_back(t);
   }
-  klt_.track(images_.current(), images_.right, work_tasks_, KltSearch::row, 1);
+  klt_.track(images_.current(), images_.right, work_tasks_, KltSearch::row, 1, true);
   for (std::size_t w = 0; w < work_tasks_.size(); ++w) {
     const KltTask& across = work_tasks_[w];
     KltTask& step = left_tasks_[work_of_[w]];

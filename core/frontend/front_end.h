@@ -132,6 +132,13 @@ class FrontEnd {
   std::vector<SurfDescriptor> lost_descriptors_;
   std::vector<SurfDescriptor> descriptors_;
   std::vector<StereoTask> stereo_tasks_;
+  struct SlopePoint {  // what measure_slopes() needs of a pair
+    Eigen::Vector2d px;
+    double disparity_px;
+    BodyId body;
+    std::size_t pair;
+  };
+  std::vector<SlopePoint> by_column_;
   std::vector<int> cell_counts_;
   std::vector<int> area_counts_;
   std::uint64_t next_track_ = 1;

@@ -13,6 +13,10 @@ using namespace klt;
 
 constexpr float kCoarseEpsilonPx = 0.03F;  // a coarse level only has to bring the next one into its basin
 
+// A prediction holds when full resolution alone ends this near and this like: closer than a false match would be.
+constexpr float kConfirmedPx = 1.5F;
+constexpr float kConfirmedNcc = 0.9F;
+
 void keep(const LevelSearch& search, float scale, KltTask& task) {
   task.ncc = search.ncc;
   task.residual_rms = search.residual_rms;
@@ -56,6 +60,15 @@ struct Descent {
     return outcome == KltOutcome::ok;
   }
 
+  // Full resolution first; false leaves the descent as it was.
+  bool confirm(KltTask& task) {
+    if (track(0, predicted, task) && task.ncc >= kConfirmedNcc && distance(place, predicted) <= kConfirmedPx)
+      return true;
+    found = false;
+    place = hint = predicted;
+    return false;
+  }
+
   // A coarse answer may belong to another surface in its wide window: then the earlier ones get their chance.
   void descend(int level, KltTask& task) {
     const std::array<Place, 3> starts{hint, place, predicted};
@@ -76,13 +89,15 @@ void refine_with_slant(Descent& descent, KltTask& task) {
 }
 
 void track_task(const KltConfig& config, const ImagePyramid& from, const ImagePyramid& to, KltSearch direction,
-                int coarsest, KltTask& task) {
+                int coarsest, bool predicted_well, KltTask& task) {
   task.outcome = KltOutcome::diverged;
   TaskWarp warp;
   if (!invert(task.warp, warp)) return;
   const Place predicted{task.u_to_px, task.v_to_px};
   Descent descent{config, from, to, direction, warp, predicted, predicted, predicted};
-  for (int level = coarsest; level >= 0; --level) descent.descend(level, task);
+  if (!(predicted_well && coarsest > 0 && descent.confirm(task))) {
+    for (int level = coarsest; level >= 0; --level) descent.descend(level, task);
+  }
   if (!descent.found) return;
   if (direction == KltSearch::slanted_row) refine_with_slant(descent, task);
   task.outcome = KltOutcome::ok;
@@ -116,11 +131,11 @@ Klt::Klt(const KltConfig& config) : config_(config) {
 }
 
 void Klt::track(const ImagePyramid& from, const ImagePyramid& to, std::span<KltTask> tasks, KltSearch search,
-                int coarsest_level) const {
+                int coarsest_level, bool predicted) const {
   const int available = std::min({from.levels(), to.levels(), config_.levels}) - 1;
   PELORUS_CHECK(available >= 0, "track() before the pyramids were built");
   const int coarsest = std::clamp(coarsest_level, 0, available);
-  for (KltTask& task : tasks) track_task(config_, from, to, search, coarsest, task);
+  for (KltTask& task : tasks) track_task(config_, from, to, search, coarsest, predicted, task);
 }
 
 }  // namespace pelorus

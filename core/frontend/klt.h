@@ -55,9 +55,10 @@ class Klt {
  public:
   explicit Klt(const KltConfig& config);
 
-  // coarsest_level: where to start; a good prediction allows a low one.
+  // coarsest_level: where to start; a good prediction allows a low one. `predicted` tasks are tried at full resolution
+  // first and go through the coarser levels only where that does not confirm the prediction to about a pixel.
   void track(const ImagePyramid& from, const ImagePyramid& to, std::span<KltTask> tasks, KltSearch search,
-             int coarsest_level) const;
+             int coarsest_level, bool predicted = false) const;
 
   [[nodiscard]] const KltConfig& config() const { return config_; }
 

@@ -133,7 +133,7 @@ StereoMatcher::Found StereoMatcher::refine(const ImagePyramid& from, const Image
   task.u_from_px = u_px;
   task.v_from_px = task.v_to_px = v_px;
   task.u_to_px = u_predicted_px;
-  klt_.track(from, to, {&task, 1}, KltSearch::slanted_row, config_.search_level);
+  klt_.track(from, to, {&task, 1}, KltSearch::slanted_row, config_.search_level, true);
   if (task.outcome == KltOutcome::out_of_image) return {StereoOutcome::out_of_image, 0, 0};
   // A new point has to be exact: an answer of a coarser level is none.
   if (task.outcome != KltOutcome::ok || task.level != 0) return {StereoOutcome::no_match, 0, task.ncc};

@@ -155,8 +155,17 @@ void hessian_row(const IntegralImage& integral, int filter_size, int u, int v, i
 }
 
 int laplacian_sign(const IntegralImage& integral, int filter_size, int u, int v) {
-  const Derivatives d = derivatives(hessian_boxes(integral, filter_size, u, v), 0);
-  return d.xx + d.yy >= 0 ? 1 : -1;
+  const int lobe = filter_size / 3;
+  const int reach = hessian_reach(filter_size);
+  const int half = (lobe - 1) / 2;
+  const std::uint32_t* top = integral.row(v + 1 - lobe);
+  const std::uint32_t* bottom = integral.row(v + lobe);
+  const auto sum = [&](int u0, int u1) {
+    const std::ptrdiff_t left = integral.offset(u + u0);
+    const std::ptrdiff_t right = integral.offset(u + u1 + 1);
+    return static_cast<std::int32_t>((bottom[right] - top[right]) - (bottom[left] - top[left]));
+  };
+  return sum(-reach, reach) - 3 * sum(-half, half) >= 0 ? 1 : -1;
 }
 
 namespace reference {

@@ -14,7 +14,8 @@ constexpr int hessian_reach(int filter_size) { return (filter_size - 1) / 2; }
 // phases, up to 8 times them. Up to 15 floats past `count` are overwritten.
 void hessian_row(const IntegralImage& integral, int filter_size, int u, int v, int step, int count, float* response);
 
-// +1 where Dxx + Dyy >= 0 (dark blob on bright ground), -1 otherwise.
+// Of a maximum, where the determinant is positive and Dxx and Dyy have one sign: +1 for it (dark blob on bright
+// ground), else -1. Told by Dxx alone.
 [[nodiscard]] int laplacian_sign(const IntegralImage& integral, int filter_size, int u, int v);
 
 namespace reference {
