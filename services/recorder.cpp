@@ -49,6 +49,17 @@ const char* text(RecorderState state) {
   return "unknown";
 }
 
+std::string summary(const RecorderStatus& status) {
+  std::string line = text(status.state);
+  if (status.state == RecorderState::recording) {
+    line += " " + status.folder + ": " + std::to_string(status.written) + " pairs";
+    if (status.dropped > 0) line += ", " + std::to_string(status.dropped) + " dropped";
+  } else if (status.state != RecorderState::off) {
+    line += ": " + status.problem;
+  }
+  return line;
+}
+
 Recorder::Recorder(const RecorderConfig& config, const FrameFormat& view, WriteCalibration write_calibration,
                    std::function<void()> on_thread_start)
     : config_(config),

@@ -36,6 +36,9 @@ struct RecorderStatus {
   std::string problem;  // why it is disk_full or failed
 };
 
+// "off", "recording FOLDER: 12 pairs", "disk full: 1.9 GB free in FOLDER".
+[[nodiscard]] std::string summary(const RecorderStatus& status);
+
 class Recorder {
  public:
   // Writes the calibration into a new recording's folder.

@@ -11,7 +11,7 @@ struct RecorderConfig {
   std::string format = "png";         // png, or pgm: larger, but costs no computing
   double min_free_gb = 2;             // of the disk; below it recording stops until there is room again
   int every = 1;                      // of so many pairs one is recorded
-  int queue_pairs = 24;               // waiting for the disk, in memory
+  int queue_pairs = 12;               // waiting for the disk, in memory
 };
 
 }  // namespace pelorus

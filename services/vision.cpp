@@ -66,6 +66,9 @@ void Vision::obey() {
 
 void Vision::take(const StereoPair& pair) {
   const Circumstances circumstances = look(pair);
+  if (parts_.recorder != nullptr) {
+    parts_.recorder->offer(circumstances.capture.capture_time, pair.left(), pair.right());
+  }
   Publication& publication = parts_.results.draft();
   publication = Publication{};
   publication.result.seq = seq_;

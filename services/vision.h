@@ -17,6 +17,7 @@
 #include "drivers/stereo_sync.h"
 #include "services/capture_watch.h"
 #include "services/preview.h"
+#include "services/recorder.h"
 #include "services/result_ring.h"
 #include "services/state_machine.h"
 
@@ -47,7 +48,8 @@ struct VisionParts {
   ResultRing& results;
   VisionControl& control;
   const CaptureClock& clock;
-  Preview* preview = nullptr;  // may be absent
+  Preview* preview = nullptr;    // may be absent
+  Recorder* recorder = nullptr;  // may be absent
 };
 
 class Vision {

@@ -186,11 +186,15 @@ void App::report_health() {
   report.counters.previews_skipped = p.service->preview->skipped();
   report.host = p.host.read();
   report.version = PELORUS_VERSION;
-  report.recorder_text = "off";
   report.can_text =
       p.service->can ? status_text(p.service->can->status(), p.service->config.can.interface) : std::string("off");
   if (p.service->can && !p.service->can->status().trouble.empty()) {
     p.log.limited(LogLevel::warning, "can", p.service->can->status().trouble, now);
+  }
+  const RecorderStatus recorder = p.service->recorder->status();
+  report.recorder_text = summary(recorder);
+  if (recorder.state == RecorderState::disk_full || recorder.state == RecorderState::failed) {
+    p.log.limited(LogLevel::warning, "recorder", "recorder: " + report.recorder_text, now);
   }
   report.config_hash = p.service->config_fingerprint;
   report.calibration_hash = p.service->calibration_fingerprint;

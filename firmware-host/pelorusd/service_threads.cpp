@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "firmware-host/pelorusd/mounting.h"
+#include "firmware-host/runtime/calibration_writer.h"
 #include "firmware-host/runtime/process_setup.h"
 #include "firmware-host/runtime/settings_hash.h"
 
@@ -66,7 +67,14 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
   preview = std::make_unique<Preview>(PreviewConfig{config.lcm.preview_rate_hz, config.lcm.preview_max_bytes},
                                       rectifier->rig(), desk.previews, desk.wake,
                                       [] { (void)set_thread("preview", ThreadClass::background); });
-  const VisionParts parts{head->sync(), *rectifier, desk.results, control, clock, preview.get()};
+  const CameraIntrinsics& view = head->calibration().left;
+  recorder = std::make_unique<Recorder>(
+      config.recorder, FrameFormat{view.width, view.height, 1},
+      [this](const std::filesystem::path& folder) {
+        return write_calibration(head->calibration(), CalibrationFormat::euroc, folder);
+      },
+      [] { (void)set_thread("record", ThreadClass::background); });
+  const VisionParts parts{head->sync(), *rectifier, desk.results, control, clock, preview.get(), recorder.get()};
   vision = std::make_unique<Vision>(parts, config.pipeline, config.capture, config.timing,
                                     prepared("vision", ThreadClass::fifo_middle));
   head->start(prepared("capture", ThreadClass::fifo_high));
@@ -80,6 +88,7 @@ void ServiceThreads::stop() {
   if (head) head->stop();
   commands.reset();
   vision.reset();
+  recorder.reset();
   preview.reset();
   publishing.reset();
 }
@@ -98,7 +107,13 @@ CommandAnswer ServiceThreads::obey(const std::string& command) {
     preview->request();
     return {true, "the next picture goes out on VIS_IMAGE_LEFT"};
   }
-  if (command == "record_start" || command == "record_stop") return {false, "no recorder is configured"};
+  if (command == "record_start") {
+    return recorder->start() ? CommandAnswer{true, "recording into " + config.recorder.folder}
+                             : CommandAnswer{false, "recording already"};
+  }
+  if (command == "record_stop") {
+    return recorder->stop() ? CommandAnswer{true, "recording ends"} : CommandAnswer{false, "not recording"};
+  }
   return {false, "unknown command; known: reset, standby, resume, snapshot, record_start, record_stop"};
 }
 

@@ -37,6 +37,7 @@ struct ServiceThreads {
   std::unique_ptr<CanPublisher> can;  // absent when off
   std::unique_ptr<PublishThread> publishing;
   std::unique_ptr<Preview> preview;
+  std::unique_ptr<Recorder> recorder;
   std::unique_ptr<Vision> vision;  // absent once the recording is at its end
   std::unique_ptr<CommandListener> commands;
 

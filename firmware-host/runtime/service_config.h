@@ -7,6 +7,7 @@
 #include "core/pipeline/config.h"
 #include "firmware-host/runtime/camera_config.h"
 #include "services/can/can_settings.h"
+#include "services/recorder_config.h"
 #include "services/service_settings.h"
 
 namespace pelorus {
@@ -29,6 +30,7 @@ struct ServiceConfig {
   CaptureWatchConfig capture;
   LcmConfig lcm;
   CanConfig can;
+  RecorderConfig recorder;
   ProcessConfig process;
   PipelineConfig pipeline;
 };

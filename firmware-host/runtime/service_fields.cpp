@@ -92,6 +92,16 @@ void list(FieldList& f, LcmConfig& c) {
   f.add("preview_max_bytes", c.preview_max_bytes, 10000, 60000);
 }
 
+void list(FieldList& f, RecorderConfig& c) {
+  f.section("recorder");
+  f.add("folder", c.folder);
+  f.add("at_start", c.at_start);
+  f.add("format", c.format, {"png", "pgm"});
+  f.add("min_free_gb", c.min_free_gb, 0, 100000);
+  f.add("every", c.every, 1, 1000);
+  f.add("queue_pairs", c.queue_pairs, 1, 1000);
+}
+
 }  // namespace
 
 std::vector<ConfigField> service_fields(ServiceConfig& config) {
@@ -103,6 +113,7 @@ std::vector<ConfigField> service_fields(ServiceConfig& config) {
   list(fields, config.capture);
   list(fields, config.lcm);
   list(fields, config.can);
+  list(fields, config.recorder);
   list(fields, config.process);
   return fields.take();
 }

@@ -115,12 +115,12 @@ TEST_F(RecorderTest, IgnoresPairsUntilStartedAndAfterStop) {
 TEST_F(RecorderTest, WritesWhatWaitsWhenItIsDestroyed) {
   auto recorder = make({.at_start = true, .min_free_gb = 0});
   ASSERT_TRUE(reaches(*recorder, RecorderState::recording));
-  for (int i = 0; i < 5; ++i) offer(*recorder, i);
+  for (int i = 0; i < 20; ++i) offer(*recorder, i);
   const std::string folder = recorder->status().folder;
   recorder.reset();
   const auto source = open_dataset(folder);
   ASSERT_TRUE(source.ok());
-  EXPECT_EQ(source.value()->pair_count(), 5U);
+  EXPECT_EQ(source.value()->pair_count(), 20U);
 }
 
 TEST_F(RecorderTest, APairTheDiskIsTooSlowForIsDroppedAndCounted) {

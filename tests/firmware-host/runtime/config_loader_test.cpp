@@ -168,6 +168,7 @@ TEST(ServiceFields, HoldEveryMemberOfEveryStruct) {
       {"capture", member_count<CaptureWatchConfig>()},
       {"lcm", member_count<LcmConfig>()},
       {"can", member_count<CanConfig>()},
+      {"recorder", member_count<RecorderConfig>()},
       {"mounting", member_count<MountingConfig>()},
       {"process", member_count<ProcessConfig>()},
   };
