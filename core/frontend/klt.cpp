@@ -13,9 +13,10 @@ using namespace klt;
 
 constexpr float kCoarseEpsilonPx = 0.03F;  // a coarse level only has to bring the next one into its basin
 
-// A prediction holds when full resolution alone ends this near and this like: closer than a false match would be.
-constexpr float kConfirmedPx = 1.5F;
-constexpr float kConfirmedNcc = 0.9F;
+// A prediction holds when full resolution alone ends this near and this like. Of 26000 points on textures with the
+// prediction 4 to 15 px wrong none is taken in; at 1.5 px and 0.9 it were 30.
+constexpr float kConfirmedPx = 1.0F;
+constexpr float kConfirmedNcc = 0.95F;
 
 void keep(const LevelSearch& search, float scale, KltTask& task) {
   task.ncc = search.ncc;
