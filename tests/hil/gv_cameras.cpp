@@ -1,0 +1,149 @@
+// Recorded pairs as two GigE Vision cameras on this machine: Aravis' fake camera, the real protocols over UDP. Both
+// fire at the multiples of the period on the wall clock and show the pair of that moment, forth and back through the
+// recording, so that its motion never jumps. Faults are injected by lines on standard input:
+//   off SIDE | on SIDE | loss SIDE SHARE | freeze SIDE 0|1 | late SIDE PAIRS | clock SIDE SECONDS      SIDE: left,
+//   right
+//
+// usage: gv_cameras DATASET LEFT_ADDRESS RIGHT_ADDRESS RATE_HZ      ends at end of input
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "drivers/replay/dataset.h"
+#include "tests/support/fake_gv_camera.h"
+
+namespace pelorus {
+namespace {
+
+struct Film {
+  std::vector<Image> frames[2];
+};
+
+Result<Film> load(const std::string& path) {
+  auto source = open_dataset(path);
+  if (!source) return source.error();
+  Film film;
+  while (true) {
+    SourcePair pair;
+    const Result<bool> read = source.value()->next(pair);
+    if (!read) return read.error();
+    if (!read.value()) return film;
+    film.frames[0].push_back(std::move(pair.left));
+    film.frames[1].push_back(std::move(pair.right));
+  }
+}
+
+// One of the two cameras and what is wrong with it.
+class Side {
+ public:
+  Side(const std::vector<Image>& frames, std::string address, std::string serial, double rate_hz)
+      : frames_(frames), address_(std::move(address)), serial_(std::move(serial)), period_ns_(1e9 / rate_hz) {}
+
+  bool on() {
+    camera_ = std::make_unique<test::FakeGvCamera>(
+        address_, serial_, frames_[0].width(), frames_[0].height(),
+        [this](std::uint8_t* pixels, int width, int height, std::int64_t t) { paint(pixels, width, height, t); });
+    camera_->set_clock_offset(clock_offset_ns_);
+    return camera_->running();
+  }
+  void off() {
+    painted_before_ = painted();
+    camera_.reset();
+  }
+  void lose(double share) {
+    if (camera_) camera_->lose_packets(share);
+  }
+  void set_clock(double seconds) {
+    clock_offset_ns_ = static_cast<std::int64_t>(seconds * 1e9);
+    if (camera_) camera_->set_clock_offset(clock_offset_ns_);
+  }
+  void freeze(bool frozen) { frozen_ = frozen; }
+  void delay(int pairs) { late_ = pairs; }
+  [[nodiscard]] std::uint64_t painted() const { return painted_before_ + (camera_ ? camera_->painted() : 0); }
+
+ private:
+  void paint(std::uint8_t* pixels, int width, int height, std::int64_t time_ns) {
+    if (!frozen_) shown_ = index_at(std::llround(static_cast<double>(time_ns) / period_ns_) - late_);
+    const Image& frame = frames_[shown_];
+    for (int v = 0; v < height && v < frame.height(); ++v)
+      std::copy_n(frame.row(v), std::min(width, frame.width()), pixels + static_cast<std::ptrdiff_t>(v) * width);
+  }
+  // Forth and back: 0, 1, ..., n-1, n-2, ..., 1, 0, 1, ...
+  [[nodiscard]] std::size_t index_at(std::int64_t tick) const {
+    const auto n = static_cast<std::int64_t>(frames_.size());
+    if (n == 1) return 0;
+    const std::int64_t phase = tick % (2 * n - 2);
+    return static_cast<std::size_t>(phase < n ? phase : 2 * n - 2 - phase);
+  }
+
+  const std::vector<Image>& frames_;
+  std::string address_;
+  std::string serial_;
+  double period_ns_;
+  std::atomic<bool> frozen_{false};
+  std::atomic<int> late_{0};
+  std::size_t shown_ = 0;  // camera's thread
+  std::int64_t clock_offset_ns_ = 0;
+  std::uint64_t painted_before_ = 0;  // by its instances switched off
+  std::unique_ptr<test::FakeGvCamera> camera_;
+};
+
+void obey(const std::string& line, std::array<Side*, 2> sides) {
+  std::istringstream words(line);
+  std::string verb;
+  std::string name;
+  double value = 0;
+  words >> verb >> name >> value;
+  if (name != "left" && name != "right") {
+    std::fprintf(stderr, "gv_cameras: '%s' names no side\n", line.c_str());
+    return;
+  }
+  Side& side = *sides[name == "left" ? 0 : 1];
+  if (verb == "off") return side.off();
+  if (verb == "on" && !side.on()) std::fprintf(stderr, "gv_cameras: %s does not come up\n", name.c_str());
+  if (verb == "loss") side.lose(value);
+  if (verb == "freeze") side.freeze(value != 0);
+  if (verb == "late") side.delay(static_cast<int>(value));
+  if (verb == "clock") side.set_clock(value);
+}
+
+int run(char** arguments) {
+  const Result<Film> film = load(arguments[1]);
+  if (!film) {
+    std::fprintf(stderr, "%s\n", film.error().message().c_str());
+    return exit_code(film.error().code);
+  }
+  const double rate_hz = std::atof(arguments[4]);
+  if (rate_hz <= 0) return 2;
+  Side left(film.value().frames[0], arguments[2], "left", rate_hz);
+  Side right(film.value().frames[1], arguments[3], "right", rate_hz);
+  if (!left.on() || !right.on()) {
+    std::fprintf(stderr, "gv_cameras: no such address on this machine\n");
+    return 7;
+  }
+  std::printf("ready: %zu pairs\n", film.value().frames[0].size());
+  std::fflush(stdout);
+  for (std::string line; std::getline(std::cin, line);) obey(line, {&left, &right});
+  std::printf("painted %llu %llu\n", static_cast<unsigned long long>(left.painted()),
+              static_cast<unsigned long long>(right.painted()));
+  return 0;
+}
+
+}  // namespace
+}  // namespace pelorus
+
+int main(int count, char** arguments) {
+  if (count != 5) {
+    std::fprintf(stderr, "usage: gv_cameras DATASET LEFT_ADDRESS RIGHT_ADDRESS RATE_HZ\n");
+    return 2;
+  }
+  return pelorus::run(arguments);
+}

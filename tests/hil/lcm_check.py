@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+"""What a listener on LCM saw of pelorusd, from the log of lcm-logger, as a table.
+
+usage: lcm_check.py LOG [--least-results N] [--max-lost SHARE]
+Exit code 1 when fewer results came, or a larger share of the pairs was lost, after the first result that tracks.
+"""
+
+import argparse
+import struct
+import sys
+
+STATES = ["INIT", "TRACKING", "DEGRADED", "LOST", "CAMERA_FAULT", "CALIBRATION_FAULT", "STANDBY"]
+EVENT = struct.Struct(">Iqqii")  # sync word, number, time of reception [us], lengths of channel and data
+ODOM = struct.Struct(">QqqdBqb")  # hash, utime, publish_utime, latency_ms, deadline_missed, seq, state
+HEALTH_COUNTERS = ("pairs_captured results_published deadline_misses dropped_in_source dropped_ring_full "
+                   "dropped_superseded dropped_unpaired results_dropped camera_timeouts frozen_spells time_jumps "
+                   "losses_of_track lcm_errors lcm_reconnects previews_skipped").split()
+
+
+def events(path):
+    with open(path, "rb") as log:
+        while header := log.read(EVENT.size):
+            if len(header) < EVENT.size:
+                return  # the logger was stopped in the middle of it
+            sync, _, received_us, channel_length, length = EVENT.unpack(header)
+            if sync != 0xEDA1DA01:
+                raise ValueError(f"{path}: not an LCM log")
+            channel = log.read(channel_length).decode()
+            yield received_us, channel, log.read(length)
+
+
+def health(data):
+    offset = 8 + 8 + 8 + 8 + 1
+    for _ in range(3):
+        (length,) = struct.unpack_from(">i", data, offset)
+        offset += 4 + length
+    offset += 10 * 8
+    counters = dict(zip(HEALTH_COUNTERS, struct.unpack_from(f">{len(HEALTH_COUNTERS)}q", data, offset)))
+    offset += len(HEALTH_COUNTERS) * 8
+    (counters["sync_error_ms"],) = struct.unpack_from(">d", data, offset)
+    return counters
+
+
+def percentiles(values):
+    values = sorted(values)
+    at = lambda share: values[min(len(values) - 1, int(share * len(values)))]
+    return {"p50": at(0.5), "p99": at(0.99), "p99.9": at(0.999), "max": values[-1], "jitter": values[-1] - values[0]}
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("log")
+    parser.add_argument("--least-results", type=int, default=1)
+    parser.add_argument("--max-lost", type=float, default=0.0)
+    arguments = parser.parse_args()
+    results, counters = [], {}
+    for received_us, channel, data in events(arguments.log):
+        if channel.endswith(".VIS_ODOM"):
+            results.append((received_us, *ODOM.unpack_from(data)[1:]))
+        elif channel.endswith(".VIS_HEALTH"):
+            counters = health(data)
+    spells = []
+    for result in results:
+        state = STATES[result[6]]
+        if not spells or spells[-1][0] != state:
+            spells.append([state, 0])
+        spells[-1][1] += 1
+    print("states:", " ".join(f"{state}x{count}" for state, count in spells))
+    first = next((i for i, result in enumerate(results) if STATES[result[6]] == "TRACKING"), len(results))
+    settled = results[first:]
+    if len(settled) < arguments.least_results or not settled:
+        print(f"only {len(settled)} results from the first that tracks, {arguments.least_results} asked for")
+        return 1
+    span = settled[-1][5] - settled[0][5] + 1
+    lost = span - len({result[5] for result in settled})
+    print(f"pairs {span}, results {len(settled)}, pairs without result {lost}, "
+          f"deadlines missed {sum(result[4] for result in settled)}")
+    for name, values in (("capture to LCM listener", [(r[0] - r[1]) / 1000 for r in settled]),
+                         ("capture to publication", [(r[2] - r[1]) / 1000 for r in settled])):
+        print(f"{name} [ms]: " + " ".join(f"{k} {v:.2f}" for k, v in percentiles(values).items()))
+    print("counters:", " ".join(f"{name}={value:g}" for name, value in counters.items() if value))
+    return 1 if lost > arguments.max_lost * span else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
