@@ -19,7 +19,10 @@ struct CanSet {
   std::array<CanFrame, kCanIdsUsed> frames{};
   int size = 0;
 
-  [[nodiscard]] std::span<const CanFrame> view() const { return {frames.data(), static_cast<std::size_t>(size)}; }
+  [[nodiscard]] std::span<const CanFrame> view() const& { return {frames.data(), static_cast<std::size_t>(size)}; }
+  std::span<const CanFrame> view() && = delete;  // would outlive its set; iterate over the set itself
+  [[nodiscard]] const CanFrame* begin() const { return frames.data(); }
+  [[nodiscard]] const CanFrame* end() const { return frames.data() + size; }
 };
 
 struct CanSetOptions {

@@ -91,7 +91,7 @@ std::string vectors_log_text(CanTransport transport) {
   Timestamp time{1'700'000'000'000'000'000};
   for (const ContractVector& vector : contract_vectors()) {
     const CanSet set = encode_set(vector.estimate, {transport, kCanDefaultBaseId, vector.counter, vector.with_slow});
-    for (CanFrame frame : set.view()) {
+    for (CanFrame frame : set) {
       frame.time = time;
       out += candump_line(frame, "can0") + "\n";
     }

@@ -48,7 +48,7 @@ std::string frame_section(const CanFrameSpec& spec) {
 std::string vector_section(const ContractVector& vector, CanTransport transport) {
   std::string out = "\n" + vector.name + ":\n\n| frame | bytes | values |\n|---|---|---|\n";
   const CanSet set = encode_set(vector.estimate, {transport, kCanDefaultBaseId, vector.counter, vector.with_slow});
-  for (const CanFrame& frame : set.view()) {
+  for (const CanFrame& frame : set) {
     CanEstimate seen;
     const CanDecoded decoded = decode_frame(frame, kCanDefaultBaseId, seen);
     out += "| " + std::string(decoded.spec->name) + " | `" + hex_bytes(frame.payload()) + "` |";

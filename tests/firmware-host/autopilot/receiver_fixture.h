@@ -32,7 +32,7 @@ class Link {
   pelorus_can_event send(const CanEstimate& estimate, unsigned number, bool with_slow = false) {
     pelorus_can_event last = PELORUS_CAN_NOT_OURS;
     const CanSet set = encode_set(estimate, {transport_, kCanDefaultBaseId, number, with_slow});
-    for (const CanFrame& frame : set.view()) last = receive(rx, frame, now_us);
+    for (const CanFrame& frame : set) last = receive(rx, frame, now_us);
     return last;
   }
   // The next estimate, one interval later.

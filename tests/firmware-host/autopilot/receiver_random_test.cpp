@@ -87,7 +87,7 @@ TEST_P(ReceiverUnderFire, EveryEstimateHandedOutIsOneThatWasSent) {
     e.step_x_m = newest_sent_mps * e.interval_s;
     e.step_y_m = e.step_z_m = e.turn_x_rad = e.turn_y_rad = e.turn_z_rad = 0;
     const CanSet set = encode_set(e, {GetParam(), kCanDefaultBaseId, ++link.counter, chance(0.2)});
-    for (CanFrame frame : set.view()) {
+    for (CanFrame frame : set) {
       if (chance(0.01)) continue;
       if (chance(0.01)) frame.bytes[random() % frame.size] ^= static_cast<std::uint8_t>(1U << (random() % 8));
       if (chance(0.005)) frame.size = static_cast<std::uint8_t>(random() % 64);

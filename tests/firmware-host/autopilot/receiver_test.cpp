@@ -13,6 +13,15 @@ using test::Link;
 using test::receive;
 using test::steady_estimate;
 
+bool is_a_deviation(const CanSignal& signal) {
+  return signal.coding == CanCoding::log_sigma || signal.coding == CanCoding::float16;
+}
+bool carried(const CanFrameSpec& spec, CanTransport transport) { return spec.fd == (transport == CanTransport::fd); }
+std::uint32_t all_bits(CanTransport transport) {
+  const std::uint32_t all = (1U << 10) - 1;
+  return transport == CanTransport::fd ? all : all & ~static_cast<std::uint32_t>(PELORUS_CAN_TURN);
+}
+
 class Receiver : public testing::TestWithParam<CanTransport> {};
 INSTANTIATE_TEST_SUITE_P(Transports, Receiver, testing::Values(CanTransport::classic, CanTransport::fd),
                          [](const auto& instance) {
@@ -92,9 +101,7 @@ TEST_P(Receiver, TellsEveryOtherFieldToo) {
   (void)link.send_next(e, true);
   const pelorus_can_estimate* seen = link.latest();
   ASSERT_NE(seen, nullptr);
-  std::uint32_t all = (1U << 10) - 1;
-  if (GetParam() == CanTransport::classic) all &= ~static_cast<std::uint32_t>(PELORUS_CAN_TURN);
-  EXPECT_EQ(seen->valid, all);
+  EXPECT_EQ(seen->valid, all_bits(GetParam()));
   EXPECT_EQ(seen->state, PELORUS_CAN_STATE_TRACKING);
   EXPECT_EQ(seen->quality, 87);
   EXPECT_EQ(seen->bodies, 2);
@@ -276,6 +283,9 @@ TEST_P(Receiver, AFieldWithoutItsBitIsNoNumber) {
       (void)link.send_next(e, true);
       const pelorus_can_estimate* seen = link.latest();
       ASSERT_NE(seen, nullptr);
+      if (is_a_deviation(signal) && carried(spec, GetParam())) {
+        EXPECT_NE(seen->valid, all_bits(GetParam())) << "a number without its deviation: " << spec.name << signal.name;
+      }
       const auto lacks = [&](unsigned bit) { return (seen->valid & bit) == 0; };
       EXPECT_EQ(lacks(PELORUS_CAN_VELOCITY), is_nan_3(seen->velocity_mps)) << spec.name << signal.name;
       EXPECT_EQ(lacks(PELORUS_CAN_STEP), is_nan_3(seen->step_m)) << spec.name << signal.name;
@@ -283,6 +293,9 @@ TEST_P(Receiver, AFieldWithoutItsBitIsNoNumber) {
       EXPECT_EQ(lacks(PELORUS_CAN_TURN), is_nan_3(seen->turn_rad)) << spec.name << signal.name;
       EXPECT_EQ(lacks(PELORUS_CAN_POSITION), is_nan_3(seen->position_m)) << spec.name << signal.name;
       EXPECT_EQ(lacks(PELORUS_CAN_ATTITUDE), std::isnan(seen->roll_rad) && std::isnan(seen->yaw_rad)) << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_VELOCITY), is_nan_3(seen->velocity_variance_m2ps2)) << spec.name << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_ATTITUDE), std::isnan(seen->attitude_variance_rad2)) << spec.name << signal.name;
+      EXPECT_EQ(lacks(PELORUS_CAN_POSITION), std::isnan(seen->position_variance_m2)) << spec.name << signal.name;
       EXPECT_EQ(lacks(PELORUS_CAN_BODY), std::isnan(seen->body_range_m)) << spec.name << signal.name;
       EXPECT_EQ(lacks(PELORUS_CAN_BODY_CLOSING), std::isnan(seen->body_closing_mps)) << spec.name << signal.name;
     }
@@ -307,7 +320,25 @@ TEST_P(Receiver, AClockThatRunsBackTakesTheLinkDown) {
   Link link(GetParam());
   link.bring_up();
   ASSERT_NE(link.latest(), nullptr);
-  EXPECT_EQ(pelorus_can_latest(&link.rx, link.now_us - 1), nullptr);
+  link.now_us += 10'000;
+  ASSERT_NE(link.latest(), nullptr);
+  EXPECT_EQ(pelorus_can_latest(&link.rx, link.now_us - 1), nullptr) << "even where the estimate is not from the future";
+  EXPECT_EQ(link.rx.counts.timeouts, 1U);
+}
+
+TEST_P(Receiver, AfterATimeoutTheCounterMayBeginAnywhereEvenWhereItEnded) {
+  for (const unsigned onward : {0U, 1U, 7U}) {
+    Link link(GetParam());
+    link.bring_up();
+    link.now_us += 400'000;
+    EXPECT_EQ(link.latest(), nullptr);
+    link.counter += onward;
+    EXPECT_EQ(link.send(steady_estimate(), link.counter), PELORUS_CAN_SET) << onward;
+    EXPECT_EQ(link.latest(), nullptr) << "one set is not enough";
+    EXPECT_EQ(link.send_next(steady_estimate()), PELORUS_CAN_SET);
+    EXPECT_NE(link.latest(), nullptr);
+    EXPECT_EQ(link.rx.counts.jumps, 0U);
+  }
 }
 
 TEST_P(Receiver, ListensToOneTransportAndOneBaseOnly) {
@@ -315,8 +346,59 @@ TEST_P(Receiver, ListensToOneTransportAndOneBaseOnly) {
   EXPECT_EQ(link.send_next(steady_estimate(), true), PELORUS_CAN_NOT_OURS);
   Link other(GetParam());
   const CanTransport wrong = GetParam() == CanTransport::fd ? CanTransport::classic : CanTransport::fd;
-  for (const CanFrame& frame : encode_set(steady_estimate(), {.transport = wrong, .with_slow = true}).view()) {
+  for (const CanFrame& frame : encode_set(steady_estimate(), {.transport = wrong, .with_slow = true})) {
     EXPECT_EQ(receive(other.rx, frame, 1), PELORUS_CAN_NOT_OURS);
+  }
+}
+
+TEST(ClassicReceiver, AFrameThatComesTwiceIsTakenOnceAndTheFirstCounts) {
+  Link link;
+  link.bring_up();
+  link.now_us += kSetInterval_us;
+  CanEstimate other = steady_estimate();
+  other.vel_x_mps = -9;
+  const CanSet set = encode_set(steady_estimate(), {.counter = ++link.counter});
+  const CanSet forged = encode_set(other, {.counter = link.counter});
+  EXPECT_EQ(receive(link.rx, set.frames[0], link.now_us), PELORUS_CAN_PART);
+  EXPECT_EQ(receive(link.rx, forged.frames[0], link.now_us), PELORUS_CAN_REPEATED);
+  for (std::size_t i = 1; i < 7; ++i) (void)receive(link.rx, set.frames[i], link.now_us);
+  ASSERT_NE(link.latest(), nullptr);
+  EXPECT_NEAR(static_cast<double>(link.latest()->velocity_mps[0]), 1.234, 1e-3);
+  EXPECT_EQ(link.rx.counts.repeated, 1U);
+}
+
+TEST(ClassicReceiver, APositionOfAnEarlierSetIsNotTakenForANewOne) {
+  Link link;
+  link.bring_up();
+  (void)link.send_next(steady_estimate(), true);
+  ASSERT_TRUE(link.latest()->valid & PELORUS_CAN_POSITION);
+  (void)link.send_next(steady_estimate(), false);
+  EXPECT_FALSE(link.latest()->valid & (PELORUS_CAN_POSITION | PELORUS_CAN_NODE));
+  EXPECT_TRUE(std::isnan(link.latest()->position_m[0]));
+}
+
+TEST(FdReceiver, VariancesFromTheLeastToInfinity) {
+  Link link(CanTransport::fd);
+  link.bring_up();
+  CanEstimate e = steady_estimate();
+  e.step_var_x_mm2 = 1e-6;  // subnormal in binary16
+  (void)link.send_next(e);
+  EXPECT_NEAR(static_cast<double>(link.latest()->step_variance_m2[0]), 1e-12, 0.06e-12);
+  e.step_var_x_mm2 = 1e9;  // more than binary16 holds: infinity, and then nothing is known of the step
+  (void)link.send_next(e);
+  EXPECT_FALSE(link.latest()->valid & (PELORUS_CAN_STEP | PELORUS_CAN_VELOCITY));
+}
+
+TEST(FdReceiver, WithoutAnIntervalThereIsNoVelocity) {
+  for (const double interval_s : {kCanUnknown, 0.0, 5.0}) {
+    Link link(CanTransport::fd);
+    link.bring_up();
+    CanEstimate e = steady_estimate();
+    e.interval_s = interval_s;
+    (void)link.send_next(e);
+    ASSERT_NE(link.latest(), nullptr);
+    EXPECT_FALSE(link.latest()->valid & (PELORUS_CAN_VELOCITY | PELORUS_CAN_INTERVAL)) << interval_s;
+    EXPECT_TRUE(std::isnan(link.latest()->interval_s));
   }
 }
 
@@ -356,7 +438,7 @@ TEST(ClassicReceiver, AnyOrderOfFramesMakesTheSameSet) {
     CanSet set = encode_set(steady_estimate(), {.counter = ++link.counter});
     std::shuffle(set.frames.begin(), set.frames.begin() + set.size, random);
     pelorus_can_event last = PELORUS_CAN_NOT_OURS;
-    for (const CanFrame& frame : set.view()) last = receive(link.rx, frame, link.now_us);
+    for (const CanFrame& frame : set) last = receive(link.rx, frame, link.now_us);
     EXPECT_EQ(last, PELORUS_CAN_SET);
   }
 }

@@ -21,7 +21,7 @@ class Printed {
   void take_vectors(CanTransport transport) {
     Timestamp time{1'700'000'000'000'000'000};
     for (const ContractVector& v : contract_vectors()) {
-      for (CanFrame frame : encode_set(v.estimate, {transport, kCanDefaultBaseId, v.counter, v.with_slow}).view()) {
+      for (CanFrame frame : encode_set(v.estimate, {transport, kCanDefaultBaseId, v.counter, v.with_slow})) {
         frame.time = time;
         dump.take(frame);
       }

@@ -59,9 +59,10 @@ TEST(CanContract, IdentifiersAndDataIdsAreUniqueAndTheClosingFramesComeLast) {
     EXPECT_TRUE(data_ids.insert(spec.data_id).second);
     EXPECT_EQ(&can_frame_spec(spec.kind), &spec);
   }
-  EXPECT_EQ(encode_set({}, {.with_slow = true}).view().back().id, kCanDefaultBaseId + 9);
-  EXPECT_EQ(encode_set({}, {.transport = CanTransport::fd, .with_slow = true}).view().back().id,
-            kCanDefaultBaseId + 11);
+  const CanSet classic = encode_set({}, {.with_slow = true});
+  EXPECT_EQ(classic.view().back().id, kCanDefaultBaseId + 9);
+  const CanSet fd = encode_set({}, {.transport = CanTransport::fd, .with_slow = true});
+  EXPECT_EQ(fd.view().back().id, kCanDefaultBaseId + 11);
 }
 
 TEST(CanContract, NamesInAFrameAreUniqueAndFitOtherTools) {
@@ -146,7 +147,7 @@ TEST(CanCodec, FramesOfASetShareCounterAndState) {
   for (const CanTransport transport : {CanTransport::classic, CanTransport::fd}) {
     const CanSet set = encode_set(estimate, {.transport = transport, .counter = 0x1234B, .with_slow = true});
     EXPECT_EQ(set.size, transport == CanTransport::fd ? 2 : 10);
-    for (const CanFrame& frame : set.view()) {
+    for (const CanFrame& frame : set) {
       CanEstimate seen;
       const CanDecoded decoded = decode_frame(frame, kCanDefaultBaseId, seen);
       EXPECT_EQ(decoded.outcome, CanDecodeOutcome::ok);
@@ -158,7 +159,7 @@ TEST(CanCodec, FramesOfASetShareCounterAndState) {
 
 TEST(CanCodec, AnUnknownEstimateSendsOnlyInvalidFields) {
   for (const CanTransport transport : {CanTransport::classic, CanTransport::fd}) {
-    for (const CanFrame& frame : encode_set({}, {.transport = transport, .with_slow = true}).view()) {
+    for (const CanFrame& frame : encode_set({}, {.transport = transport, .with_slow = true})) {
       CanEstimate seen;
       const CanDecoded decoded = decode_frame(frame, kCanDefaultBaseId, seen);
       for (const CanSignal& signal : decoded.spec->signals) {
@@ -195,7 +196,7 @@ TEST(CanCodec, EveryChangeOfUpToThreeBitsIsRefused) {
 }
 
 TEST(CanCodec, AFrameUnderAnotherIdentifierOfTheContractIsRefused) {
-  for (const CanFrame& frame : encode_set({}, {.with_slow = true}).view()) {
+  for (const CanFrame& frame : encode_set({}, {.with_slow = true})) {
     for (std::uint32_t offset = 0; offset < 10; ++offset) {
       CanFrame moved = frame;
       moved.id = kCanDefaultBaseId + offset;
