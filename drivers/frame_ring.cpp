@@ -3,6 +3,7 @@
 #include <poll.h>
 #include <sys/eventfd.h>
 
+#include <chrono>
 #include <optional>
 
 namespace pelorus {
@@ -66,12 +67,17 @@ FrameLease FrameRing::oldest() {
 }
 
 bool FrameRing::wait(Duration timeout) {
-  if (has_frame()) return true;
-  pollfd wake{wake_.get(), POLLIN, 0};
-  const timespec limit{static_cast<time_t>(timeout.count() / 1'000'000'000),
-                       static_cast<long>(timeout.count() % 1'000'000'000)};
-  if (::ppoll(&wake, 1, &limit, nullptr) > 0) clear_wake();
-  return has_frame();
+  const auto deadline = std::chrono::steady_clock::now() + timeout;
+  // The descriptor may still tell of a frame that was taken already: then it is waited on.
+  while (!has_frame()) {
+    const Duration left = deadline - std::chrono::steady_clock::now();
+    if (left <= Duration::zero()) return false;
+    pollfd wake{wake_.get(), POLLIN, 0};
+    const timespec limit{static_cast<time_t>(left.count() / 1'000'000'000),
+                         static_cast<long>(left.count() % 1'000'000'000)};
+    if (::ppoll(&wake, 1, &limit, nullptr) > 0) clear_wake();
+  }
+  return true;
 }
 
 void FrameRing::clear_wake() {

@@ -78,10 +78,12 @@ bool Capture::open_camera() {
 }
 
 void Capture::stream(const std::stop_token& stop) {
-  auto last = std::chrono::steady_clock::now();
+  auto last = std::chrono::steady_clock::now();  // usable frame
+  auto last_sign = last;                         // or an unusable one: the connection stands, a new one is no cure
   while (!stop.stop_requested()) {
     const FrameOutcome outcome = camera_->next(ring_.slot(), kStep);
     const auto now = std::chrono::steady_clock::now();
+    if (outcome == FrameOutcome::frame || outcome == FrameOutcome::dropped) last_sign = now;
     if (outcome == FrameOutcome::frame) {
       last = now;
       note_frame();
@@ -89,7 +91,7 @@ void Capture::stream(const std::stop_token& stop) {
     }
     if (outcome == FrameOutcome::ended) return set_state(CaptureState::ended);
     if (outcome == FrameOutcome::lost) return set_state(CaptureState::lost);
-    if (now - last > duration(config_.reopen_after_s)) return set_state(CaptureState::lost);
+    if (now - last_sign > duration(config_.reopen_after_s)) return set_state(CaptureState::lost);
     if (now - last > duration(config_.silent_after_s)) set_state(CaptureState::silent);
   }
 }

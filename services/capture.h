@@ -31,7 +31,7 @@ enum class CaptureState : std::uint8_t {
 
 struct CaptureConfig {
   double silent_after_s = 0.25;  // without a usable frame: state silent
-  double reopen_after_s = 1.5;   // ... the camera is closed and opened anew
+  double reopen_after_s = 1.5;   // without any frame: the camera is closed and opened anew
   double retry_first_s = 0.2;    // pause after a failed opening; doubles ...
   double retry_longest_s = 2.0;  // ... up to this
 };

@@ -67,6 +67,17 @@ TEST(FrameRing, WakesAConsumerThatWaits) {
   EXPECT_FALSE(ring.wait(0ms));
 }
 
+TEST(FrameRing, AFrameTakenWithoutWaitingDoesNotCutTheNextWaitShort) {
+  FrameRing ring(3, kSmall);
+  ASSERT_TRUE(publish(ring, 1));
+  EXPECT_TRUE(ring.newest());
+  std::jthread producer([&] {
+    std::this_thread::sleep_for(20ms);
+    EXPECT_TRUE(publish(ring, 2));
+  });
+  EXPECT_TRUE(ring.wait(10s));
+}
+
 TEST(FrameRing, ItsDescriptorIsReadableFromAFrameToTheClearing) {
   FrameRing ring(3, kSmall);
   const auto readable = [&] {

@@ -15,6 +15,7 @@ using namespace std::chrono_literals;
 struct Device {
   std::atomic<bool> present{true};
   std::atomic<bool> delivers{true};
+  std::atomic<bool> spoils{false};
   std::atomic<int> frames_left{1'000'000};
 };
 
@@ -32,6 +33,7 @@ class ScriptedCamera final : public Camera {
     if (!device_.present) return FrameOutcome::lost;
     std::this_thread::sleep_for(device_.delivers ? Duration(1ms) : timeout);
     if (!device_.delivers) return FrameOutcome::timeout;
+    if (device_.spoils) return FrameOutcome::dropped;
     --device_.frames_left;
     frames_.add();
     frame.seq = frames_.value();
@@ -103,6 +105,17 @@ TEST_F(CaptureTest, OpensASilentCameraAnew) {
   device_.delivers = true;
   EXPECT_TRUE(reaches(CaptureState::streaming));
   EXPECT_GE(capture_.status().camera.opened, 2U);
+}
+
+TEST_F(CaptureTest, SpoiltFramesAreSilenceButNoReasonToOpenAnew) {
+  ASSERT_TRUE(reaches(CaptureState::streaming));
+  device_.spoils = true;
+  EXPECT_TRUE(reaches(CaptureState::silent));
+  std::this_thread::sleep_for(500ms);  // longer than reopen_after_s
+  EXPECT_EQ(capture_.status().state, CaptureState::silent);
+  device_.spoils = false;
+  EXPECT_TRUE(reaches(CaptureState::streaming));
+  EXPECT_EQ(capture_.status().camera.opened, 1U);
 }
 
 TEST_F(CaptureTest, EndsWithRecordedFrames) {
