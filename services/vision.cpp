@@ -101,6 +101,11 @@ Circumstances Vision::look(const StereoPair& pair) {
   c.standby = parts_.control.standby.load(std::memory_order_relaxed);
   c.capture = watch_.look(pair.capture_time, pair.arrival, pair.left(), pair.right());
   if (c.capture.time_jumped) time_jumps_.add();
+  // The driver may have replaced a stamp already, and counted it.
+  const bool by_arrival = pair.first->time_source == TimeSource::arrival ||
+                          (pair.second && pair.second->time_source == TimeSource::arrival);
+  c.capture.time_jumped = c.capture.time_jumped || (by_arrival && stamped_);
+  stamped_ = stamped_ || !by_arrival;
   if (c.capture.froze) frozen_spells_.add();
   mean_grey_.store(c.capture.mean_grey, std::memory_order_relaxed);
   contrast_grey_.store(c.capture.contrast_grey, std::memory_order_relaxed);

@@ -80,6 +80,7 @@ class Vision {
   Timestamp last_heard_;  // of the last pair or missing result
   bool missing_ = false;  // in a spell without pictures
   bool any_pair_ = false;
+  bool stamped_ = false;             // pairs came with stamps better than their arrival
   std::uint64_t last_pair_seq_ = 0;  // as the camera counts
   std::uint64_t seq_ = 0;            // as we count: grows over everything
   bool stepped_ = false;             // the pipeline has seen a pair

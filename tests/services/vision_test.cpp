@@ -35,6 +35,7 @@ class VisionBench : public ::testing::Test {
     slot.seq = ++camera_seq_;
     slot.mid_exposure = clock_.now();
     slot.arrival = slot.mid_exposure;
+    slot.time_source = time_source_;
     ring_.publish();
     return result();
   }
@@ -61,6 +62,7 @@ class VisionBench : public ::testing::Test {
   VisionControl control_;
   CaptureWatchConfig watch_;
   std::uint64_t camera_seq_ = 0;
+  TimeSource time_source_ = TimeSource::hardware;
   std::unique_ptr<Vision> vision_;
 };
 
@@ -118,6 +120,25 @@ TEST_F(VisionBench, ACameraThatCountsAnewLosesNothing) {
   const Publication after = pass(2);
   EXPECT_EQ(after.result.seq, 3U);
   EXPECT_EQ(after.pairs_dropped, 0U);
+}
+
+TEST_F(VisionBench, AStampThatTheDriverReplacedDegradesItsPair) {
+  start();
+  time_source_ = TimeSource::hardware;
+  pass(0), pass(1);
+  time_source_ = TimeSource::arrival;
+  const Publication replaced = pass(2);
+  EXPECT_EQ(replaced.reason, StateReason::time_jump);
+  EXPECT_TRUE(replaced.result.pose_valid);
+  time_source_ = TimeSource::hardware;
+  EXPECT_NE(pass(3).reason, StateReason::time_jump);
+}
+
+TEST_F(VisionBench, ACameraWithoutStampsIsNotBlamedForIt) {
+  start();
+  time_source_ = TimeSource::arrival;
+  pass(0);
+  EXPECT_NE(pass(1).reason, StateReason::time_jump);
 }
 
 TEST_F(VisionBench, StandbyRestsAndAResetStartsTheWorldAnew) {

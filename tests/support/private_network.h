@@ -4,11 +4,13 @@
 
 #include <arpa/inet.h>
 #include <net/if.h>
+#include <net/route.h>
 #include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <initializer_list>
@@ -42,6 +44,27 @@ inline bool enter_private_network(std::initializer_list<const char*> more_addres
   }
   close(fd);
   return good;
+}
+
+// A route for multicast over loopback, without which LCM cannot be opened.
+inline bool add_multicast_route() {
+  const int fd = socket(AF_INET, SOCK_DGRAM, 0);
+  rtentry route{};
+  const auto set = [](sockaddr& place, std::uint32_t ip) {
+    sockaddr_in in{};
+    in.sin_family = AF_INET;
+    in.sin_addr.s_addr = htonl(ip);
+    std::memcpy(&place, &in, sizeof in);
+  };
+  set(route.rt_dst, 0xE0000000);
+  set(route.rt_genmask, 0xF0000000);
+  set(route.rt_gateway, 0);
+  route.rt_flags = RTF_UP;
+  char loopback[] = "lo";
+  route.rt_dev = loopback;
+  const bool added = ioctl(fd, SIOCADDRT, &route) == 0;
+  close(fd);
+  return added;
 }
 
 }  // namespace pelorus::test

@@ -56,9 +56,11 @@ class RunningService {
  public:
   // `settings`: further lines of configuration. The listener is there before the service.
   RunningService(const std::filesystem::path& dive, const std::string& settings, int bus)
+      : RunningService("source:\n  path: \"" + dive.string() + "\"\n" + repeat(settings), settings, bus) {}
+  // `source`: the whole section.
+  RunningService(const std::string& source, const std::string& settings, int bus)
       : url_(loopback_url(bus)), odom(url_, "TEST.VIS_ODOM"), health(url_, "TEST.VIS_HEALTH") {
-    write_text(config(), "source:\n  path: \"" + dive.string() + "\"\n" + repeat(settings) + "lcm:\n  url: \"" + url_ +
-                             "\"\n  vehicle: TEST\n" + settings);
+    write_text(config(), source + "lcm:\n  url: \"" + url_ + "\"\n  vehicle: TEST\n" + settings);
     process = std::make_unique<ChildProcess>(std::vector<std::string>{PELORUSD, "--config", config().string()},
                                              folder_.path() / "log");
   }

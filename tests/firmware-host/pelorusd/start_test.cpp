@@ -1,10 +1,5 @@
 // Starting pelorusd: messages and exit codes, the service manager, and a computer without a multicast route.
 #include <gtest/gtest.h>
-#include <net/if.h>
-#include <net/route.h>
-#include <netinet/in.h>
-#include <sched.h>
-#include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <sys/un.h>
 
@@ -13,6 +8,7 @@
 #include <cstring>
 
 #include "tests/firmware-host/pelorusd/running_service.h"
+#include "tests/support/private_network.h"
 
 namespace pelorus {
 namespace {
@@ -109,46 +105,9 @@ TEST(Start, ServiceManagerHearsReadyWatchdogAndStopping) {
   ::close(fd);
 }
 
-// --- A network namespace of its own: a computer without a route for multicast ---
-
-bool enter_empty_network() {
-  if (::unshare(CLONE_NEWNET) == 0) return true;
-  return ::unshare(CLONE_NEWUSER | CLONE_NEWNET) == 0;
-}
-
-void set_loopback_up() {
-  const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
-  ifreq request{};
-  std::strcpy(request.ifr_name, "lo");
-  request.ifr_flags = IFF_UP | IFF_RUNNING;
-  ::ioctl(fd, SIOCSIFFLAGS, &request);
-  ::close(fd);
-}
-
-bool add_multicast_route() {
-  const int fd = ::socket(AF_INET, SOCK_DGRAM, 0);
-  rtentry route{};
-  const auto set = [](sockaddr& place, std::uint32_t ip) {
-    sockaddr_in in{};
-    in.sin_family = AF_INET;
-    in.sin_addr.s_addr = htonl(ip);
-    std::memcpy(&place, &in, sizeof in);
-  };
-  set(route.rt_dst, 0xE0000000);
-  set(route.rt_genmask, 0xF0000000);
-  set(route.rt_gateway, 0);
-  route.rt_flags = RTF_UP;
-  std::string device = "lo";
-  route.rt_dev = device.data();
-  const bool added = ::ioctl(fd, SIOCADDRT, &route) == 0;
-  ::close(fd);
-  return added;
-}
-
 // In a child, because a process cannot leave a namespace it entered. Exit code 0: all went as it should.
 int without_route(const std::filesystem::path& dive) {
-  if (!enter_empty_network()) return 77;
-  set_loopback_up();
+  if (!test::enter_private_network({})) return 77;
   const TemporaryFolder folder;
   const std::string url = test::loopback_url(9);
   test::write_text(folder.path() / "p.yaml", "source:\n  path: \"" + dive.string() +
@@ -163,7 +122,7 @@ int without_route(const std::filesystem::path& dive) {
   };
   if (!says("LCM cannot be reached")) return 1;
   if (!says("TRACKING")) return 2;  // vision goes on meanwhile
-  if (!add_multicast_route()) return 3;
+  if (!test::add_multicast_route()) return 3;
   test::Listener<vis_odom_t> odom(url, "TEST.VIS_ODOM");
   if (!odom.wait_for(3, 10)) return 4;
   test::Listener<vis_health_t> health(url, "TEST.VIS_HEALTH");
