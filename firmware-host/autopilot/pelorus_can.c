@@ -61,7 +61,6 @@ void pelorus_can_start(pelorus_can_receiver* rx, const pelorus_can_config* confi
 static void drop_link(pelorus_can_receiver* rx) {
   rx->link = PELORUS_CAN_LINK_TIMEOUT;
   rx->sequence_known = false;
-  rx->good = 0;
   rx->pending = 0;
   ++rx->counts.timeouts;
 }
