@@ -11,7 +11,7 @@ namespace {
 
 using namespace klt;
 
-constexpr float kCoarseEpsilonPx = 0.03F;  // a coarse level only has to bring the next one into its basin
+constexpr float kCoarseEpsilonPx = 0.06F;  // a coarse level only has to bring the next one into its basin
 
 // A prediction holds when full resolution alone ends this near and this like. Of 26000 points on textures with the
 // prediction 4 to 15 px wrong none is taken in; at 1.5 px and 0.9 it were 30.
