@@ -2,9 +2,9 @@
 # The whole service over real protocols, each part a process of its own: recorded pairs as two GigE Vision cameras
 # (gv_cameras) -> pelorusd -> LCM -> lcm-logger, in a network of its own on this machine. Prints what the listener saw.
 #
-# usage: gigevision.sh [-s SECONDS] [-r RATE_HZ] [-b BUILD_FOLDER] [-l MAX_LOST_SHARE] [-f "SECOND COMMAND"]... DATASET
+# usage: gigevision.sh [-s SECONDS] [-r RATE_HZ] [-b BUILD_FOLDER] [-l MAX_LOST_SHARE] [-f "SECOND COMMAND"]... [DATASET]
 #   -f  a fault, e.g. "5 off left": a line for gv_cameras at that second
-#   DATASET  an EuRoC folder, which also brings the calibration
+#   DATASET  an EuRoC folder, which also brings the calibration; default: 60 pairs rendered into out/hil/dive
 # Exit code: 0 good, 1 results are missing, 77 when a part is not there.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
@@ -26,8 +26,11 @@ while getopts s:r:b:l:f: option; do
   esac
 done
 shift $((OPTIND - 1))
-[ $# -eq 1 ] || { sed -n '2,9p' "${BASH_SOURCE[0]}" >&2; exit 2; }
-dataset=$1
+[ $# -le 1 ] || { sed -n '2,9p' "${BASH_SOURCE[0]}" >&2; exit 2; }
+dataset=${1:-$root/out/hil/dive}
+if [ $# -eq 0 ] && [ ! -d "$dataset" ]; then
+  "$root/build/bin/pelorus" synth paper --frames 60 --out "$dataset"
+fi
 pelorusd=${PELORUSD:-$root/build/bin/pelorusd}
 for part in "$pelorusd" "$build/tests/gv_cameras" "$(command -v lcm-logger || echo lcm-logger)"; do
   [ -x "$part" ] || { echo "gigevision.sh: $part is not there" >&2; exit 77; }
@@ -55,7 +58,7 @@ camera:
   right: 127.0.1.2
   rate_hz: $rate
   clock: ptp
-  tolerance_ms: ${PELORUS_HIL_TOLERANCE_MS:-15}
+  tolerance_ms: ${PELORUS_HIL_TOLERANCE_MS:-2}
 recorder:
   folder: $work/recordings
 ${PELORUS_HIL_SETTINGS:-}
@@ -72,10 +75,10 @@ for _ in $(seq 600); do
 done
 lcm-logger -q -f "$work/log.lcm" &
 logger=$!
-started+=($logger)
+started+=("$logger")
 "$pelorusd" --config "$work/pelorus.yaml" &
 service=$!
-started+=($service)
+started+=("$service")
 for second in $(seq "$seconds"); do
   sleep 1
   for fault in ${faults[@]+"${faults[@]}"}; do
@@ -89,7 +92,7 @@ kill -TERM $service
 wait $service || echo "gigevision.sh: pelorusd ended with code $?"
 kill -INT $logger
 wait $logger || true
-log=$(ls "$work"/log.lcm* | head -1)
+log=$(find "$work" -name "log.lcm*" | head -1)
 exec 3>&-
 wait "${started[0]}" || true
 cat "$work/cameras.txt"

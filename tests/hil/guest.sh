@@ -10,7 +10,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 cache=${PELORUS_HIL_CACHE:-$root/build/hil}
-limit=300 out= modules= noise=quiet
+limit=300 out='' modules='' noise=quiet
 while getopts t:o:m:v option; do
   case $option in
     t) limit=$OPTARG ;;

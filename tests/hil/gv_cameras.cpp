@@ -52,6 +52,7 @@ class Side {
         address_, serial_, frames_[0].width(), frames_[0].height(),
         [this](std::uint8_t* pixels, int width, int height, std::int64_t t) { paint(pixels, width, height, t); });
     camera_->set_clock_offset(clock_offset_ns_);
+    camera_->stamp_ticks_of(std::llround(period_ns_));
     return camera_->running();
   }
   void off() {
@@ -71,7 +72,9 @@ class Side {
 
  private:
   void paint(std::uint8_t* pixels, int width, int height, std::int64_t time_ns) {
-    if (!frozen_) shown_ = index_at(std::llround(static_cast<double>(time_ns) / period_ns_) - late_);
+    // The tick at which it fired: painting is late under load, early never by more than a clock's grain.
+    const auto tick = static_cast<std::int64_t>(std::floor(static_cast<double>(time_ns) / period_ns_ + 0.25));
+    if (!frozen_) shown_ = index_at(tick - late_);
     const Image& frame = frames_[shown_];
     for (int v = 0; v < height && v < frame.height(); ++v)
       std::copy_n(frame.row(v), std::min(width, frame.width()), pixels + static_cast<std::ptrdiff_t>(v) * width);

@@ -7,7 +7,7 @@ build=$(cd "${1:-$here/../../build/release}" && pwd)
 for attempt in 1 2; do
   code=0
   "$here/guest.sh" -t 240 -- "$build/tests/v4l2_v4l2_camera_test" --gtest_brief=1 || code=$?
-  [ $code = 124 ] || [ $code = 125 ] || exit $code
+  [ $code = 124 ] || [ $code = 125 ] || exit "$code"
   echo "v4l2.sh: the guest did not come up (attempt $attempt)" >&2
 done
-exit $code
+exit "$code"

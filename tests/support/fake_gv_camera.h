@@ -33,6 +33,9 @@ class FakeGvCamera {
   [[nodiscard]] bool running() const { return arv_gv_fake_camera_is_running(camera_) != 0; }
   [[nodiscard]] std::uint64_t painted() const { return painted_; }
   void lose_packets(double share) { g_object_set(camera_, "gvsp-lost-ratio", share, nullptr); }
+  // Stamps the multiple of the period at which it fired, as a triggered camera does, not the moment at which this
+  // computer came to paint the picture. 0 = off.
+  void stamp_ticks_of(std::int64_t period_ns) { tick_ns_ = period_ns; }
   // Of the camera's own clock against the wall clock.
   void set_clock_offset(std::int64_t offset_ns) { clock_offset_ns_ = offset_ns; }
 
@@ -43,7 +46,9 @@ class FakeGvCamera {
     // The size reported is 0 here; the memory is that of the whole payload.
     auto* pixels = static_cast<std::uint8_t*>(const_cast<void*>(arv_buffer_get_data(buffer, nullptr)));
     self->paint_(pixels, arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer), now_ns);
-    arv_buffer_set_timestamp(buffer, static_cast<guint64>(now_ns + self->clock_offset_ns_));
+    const std::int64_t tick_ns = self->tick_ns_;
+    const std::int64_t fired_ns = tick_ns > 0 ? (now_ns + tick_ns / 4) / tick_ns * tick_ns : now_ns;
+    arv_buffer_set_timestamp(buffer, static_cast<guint64>(fired_ns + self->clock_offset_ns_));
     ++self->painted_;
   }
 
@@ -51,6 +56,7 @@ class FakeGvCamera {
   Paint paint_;
   std::atomic<std::uint64_t> painted_{0};
   std::atomic<std::int64_t> clock_offset_ns_{0};
+  std::atomic<std::int64_t> tick_ns_{0};
 };
 
 }  // namespace pelorus::test
