@@ -10,6 +10,8 @@
 #include <memory>
 #include <string>
 
+#include "drivers/v4l2/v4l2_discovery.h"
+
 namespace pelorus {
 namespace {
 
@@ -217,6 +219,14 @@ TEST_F(VividTest, AnImpossibleSizeIsRefusedWithWhatIsOffered) {
   const Result<> opened = camera.open();
   ASSERT_FALSE(opened.ok());
   EXPECT_NE(opened.error().message().find("1280x720"), std::string::npos) << opened.error().message();
+}
+
+TEST_F(VividTest, DevicesAreFoundByNameAndByWhatTheyCannot) {
+  const std::vector<FoundDevice> found = find_v4l2_devices();
+  ASSERT_GE(found.size(), 2U);
+  EXPECT_EQ(found[0].path, "/dev/video0");
+  EXPECT_NE(found[0].name.find("vivid"), std::string::npos);
+  EXPECT_EQ(found[0].problem, "");
 }
 
 // The dequeue watchdog: a stream whose buffers are all lost is restarted in place.
