@@ -105,6 +105,7 @@ static unsigned long run(int bus, pelorus_can_receiver* rx, unsigned long sets, 
   const uint64_t end_us = micros() + (uint64_t)(seconds * 1e6);
   pelorus_can_link link = PELORUS_CAN_LINK_SILENT;
   uint64_t printed_us = 0;
+  uint64_t refused_us = 0;
   unsigned long usable = 0;
   while (!stopped && (sets == 0 || usable < sets) && (seconds <= 0 || micros() < end_us)) {
     struct pollfd ready = {bus, POLLIN, 0};
@@ -116,6 +117,11 @@ static unsigned long run(int bus, pelorus_can_receiver* rx, unsigned long sets, 
     if (now != link) printf("link %s\n", link_name(now));
     link = now;
     estimate = pelorus_can_latest(rx, micros());
+    if (!estimate && link == PELORUS_CAN_LINK_UP && rx->estimate.received_us != refused_us) {
+      refused_us = rx->estimate.received_us;
+      printf("#%-3u too old: %.1f ms\n", rx->estimate.counter,
+             (double)pelorus_can_age_us(&rx->estimate, micros()) * 1e-3);
+    }
     if (!estimate || estimate->received_us == printed_us) continue;
     printed_us = estimate->received_us;
     print_estimate(estimate, micros());

@@ -93,7 +93,7 @@ typedef struct {
   uint32_t base_id;       /* PELORUS_CAN_BASE_ID */
   uint32_t timeout_us;    /* without a set for so long: TIMEOUT */
   uint32_t set_window_us; /* the frames of a set arrive within this, or the set is dropped */
-  uint32_t max_age_us;    /* older measurements are not handed out */
+  uint32_t max_age_us;    /* older measurements are not handed out; more than the declared latency */
   uint8_t max_step;       /* largest accepted step of the counter: max_step - 1 lost sets are forgiven */
   uint8_t good_sets;      /* sets in sequence before the link is up (again) */
   bool fd;                /* listen to VIS_FD in place of the classic frames */

@@ -100,6 +100,8 @@ TEST(CanCodec, AValueBeyondItsFieldIsInvalidAndNeverClipped) {
   EXPECT_EQ(raw_of(vx, 32.7674), 0x7FFFU);
   EXPECT_EQ(raw_of(vx, 32.768), 0x8000U);
   EXPECT_EQ(raw_of(vx, -32.768), 0x8000U) << "the invalid code is not a velocity";
+  EXPECT_EQ(raw_of(vx, -40), 0x8000U) << "and does not wrap round to a positive one";
+  EXPECT_EQ(raw_of(vx, -1e300), 0x8000U);
   EXPECT_EQ(raw_of(vx, 1e300), 0x8000U);
   EXPECT_EQ(raw_of(vx, std::numeric_limits<double>::infinity()), 0x8000U);
   EXPECT_EQ(raw_of(vx, kCanUnknown), 0x8000U);
