@@ -62,8 +62,8 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
     can = std::make_unique<CanPublisher>(config.can, T_body_cam, latency, hash);
     publishers.push_back(can.get());
   }
-  publishing =
-      std::make_unique<PublishThread>(desk, publishers, config.timing, clock, prepared("publish", ThreadClass::normal));
+  publishing = std::make_unique<PublishThread>(desk, publishers, config.timing, clock,
+                                               prepared("publish", ThreadClass::fifo_release));
   preview = std::make_unique<Preview>(PreviewConfig{config.lcm.preview_rate_hz, config.lcm.preview_max_bytes},
                                       rectifier->rig(), desk.previews, desk.wake,
                                       [] { (void)set_thread("preview", ThreadClass::background); });
@@ -77,7 +77,8 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
   const VisionParts parts{head->sync(), *rectifier, desk.results, control, clock, preview.get(), recorder.get()};
   vision = std::make_unique<Vision>(parts, config.pipeline, config.capture, config.timing,
                                     prepared("vision", ThreadClass::fifo_middle));
-  head->start(prepared("capture", ThreadClass::fifo_high));
+  // A device's thread copies; that of a recording decodes or renders, which must not keep others waiting.
+  head->start(prepared("capture", head->is_live() ? ThreadClass::fifo_high : ThreadClass::normal));
   if (config.lcm.enabled && config.lcm.commands) {
     commands = std::make_unique<CommandListener>(
         config.lcm, [this](const std::string& command, const std::string&) { return obey(command); });

@@ -18,6 +18,7 @@ constexpr int kRingSlots = 8;
 Result<std::unique_ptr<StereoHead>> StereoHead::prepare(const ServiceConfig& config, const CaptureClock& clock) {
   std::unique_ptr<StereoHead> head(new StereoHead());
   const bool live = config.source.kind != "replay" && config.source.kind != "synthetic";
+  head->live_ = live;
   const Result<> prepared = live ? head->prepare_live(config, clock) : head->prepare_source(config.source, clock);
   if (!prepared) return prepared.error();
   return head;

@@ -29,6 +29,8 @@ class StereoHead {
 
   [[nodiscard]] StereoSync& sync() { return *sync_; }
   [[nodiscard]] const StereoCalibration& calibration() const { return calibration_; }
+  // Devices, not recorded or rendered pairs.
+  [[nodiscard]] bool is_live() const { return live_; }
   // For the log: what was opened and what was assumed.
   [[nodiscard]] const std::string& description() const { return description_; }
   [[nodiscard]] std::vector<CaptureStatus> status() const;
@@ -40,6 +42,7 @@ class StereoHead {
   [[nodiscard]] Result<> prepare_source(const SourceConfig& source, const CaptureClock& clock);
   [[nodiscard]] Result<> prepare_live(const ServiceConfig& config, const CaptureClock& clock);
 
+  bool live_ = false;
   StereoCalibration calibration_;
   std::string description_;
   CaptureConfig capture_config_;

@@ -13,6 +13,7 @@ namespace pelorus {
 namespace {
 
 constexpr int kHighPriority = 40;
+constexpr int kReleasePriority = 35;
 constexpr int kMiddlePriority = 30;
 constexpr int kBackgroundNice = 10;
 constexpr std::size_t kTouchedStack = 512 * 1024;
@@ -46,7 +47,9 @@ std::string set_thread(const char* name, ThreadClass wanted) {
   }
   touch_stack();
   sched_param parameters{};
-  parameters.sched_priority = wanted == ThreadClass::fifo_high ? kHighPriority : kMiddlePriority;
+  parameters.sched_priority = wanted == ThreadClass::fifo_high      ? kHighPriority
+                              : wanted == ThreadClass::fifo_release ? kReleasePriority
+                                                                    : kMiddlePriority;
   const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
   return error == 0 ? "" : std::strerror(error);
 }

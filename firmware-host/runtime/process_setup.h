@@ -11,10 +11,11 @@ namespace pelorus {
 [[nodiscard]] std::string lock_memory();
 
 enum class ThreadClass {
-  fifo_high,    // capture: a picture waits for nobody
-  fifo_middle,  // vision
-  normal,       // publishing
-  background    // previews, recording
+  fifo_high,     // capture: a picture waits for nobody
+  fifo_release,  // publishing: little work, at an exact moment, also while vision computes
+  fifo_middle,   // vision
+  normal,
+  background  // previews, recording
 };
 
 // Names the calling thread (15 characters) and sets its class. Empty when granted, else why not.
