@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "core/motion/rigidity.h"
 #include "core/motion/stereo_transfer.h"
 
 namespace pelorus {
@@ -26,6 +25,8 @@ const Partition& Grouping::run(const StereoRig& rig, PointPairs pairs, std::span
   motions_.assign(prior_motions.begin(), prior_motions.end());
   if (candidates.size() < static_cast<std::size_t>(config_.min_group_points)) return partition_;
 
+  candidate_points_.assign(rig, pairs, candidates);
+  propose_by_labels(rig, pairs, candidates, seed);
   if (options.rigidity) {
     propose_by_rigidity(rig, pairs, candidates, seed);
   } else {
@@ -42,10 +43,47 @@ const Partition& Grouping::run(const StereoRig& rig, PointPairs pairs, std::span
   return partition_;
 }
 
+// What moved together before is likely to do so again: the points of each body propose its motion of this step.
+void Grouping::propose_by_labels(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
+                                 std::uint64_t seed) {
+  for (BodyId body = kWorldBody; body.value >= 0;) {
+    BodyId next = kNoBody;
+    labelled_.clear();
+    for (const PointIndex i : candidates) {
+      const BodyId here = at(pairs, i).previous_body;
+      if (here == body) labelled_.push_back(i);
+      if (here > body && (next == kNoBody || here < next)) next = here;
+    }
+    if (static_cast<int>(labelled_.size()) >= config_.min_group_points) {
+      const auto label_seed = seed * 64 + 63 + static_cast<std::uint64_t>(body.value) * 4096;
+      const auto motion = propose_motion(rig, pairs, labelled_, label_seed, config_.proposal, proposal_points_);
+      if (motion) {
+        const MotionFit fit = two_frame_ba_.run(rig, pairs, labelled_, *motion);
+        motions_.push_back(fit.outcome == StageOutcome::ok ? fit.H_curr_prev : *motion);
+      }
+    }
+    body = next;
+  }
+}
+
+bool Grouping::is_known(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> group,
+                        std::size_t known_motions) {
+  proposal_points_.assign(rig, pairs, group);
+  for (std::size_t m = 0; m < known_motions; ++m) {
+    const auto chi2 = proposal_points_.chi2(rig, motions_[m]);
+    const auto explained = std::count_if(chi2.begin(), chi2.end(), [](double c) { return c < kChi2_3dof_990; });
+    if (static_cast<double>(explained) >= config_.known_share * static_cast<double>(group.size())) return true;
+  }
+  return false;
+}
+
 // Paper 5.1: no accept threshold; each point goes to the seed with which it is most rigid.
 void Grouping::propose_by_rigidity(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
                                    std::uint64_t seed) {
+  const std::size_t known_motions = motions_.size();
   const auto seeds = seed_points_.run(rig, pairs, candidates);
+  histories_.resize(pairs.size());
+  for (const PointIndex i : candidates) histories_[static_cast<std::size_t>(i)] = history_of(rig, at(pairs, i));
   seed_groups_.resize(seeds.size());
   for (auto& group : seed_groups_) group.clear();
   for (const PointIndex i : candidates) {
@@ -53,7 +91,8 @@ void Grouping::propose_by_rigidity(const StereoRig& rig, PointPairs pairs, std::
     double best_cost = 1e30;
     for (std::size_t s = 0; s < seeds.size(); ++s) {
       if (seeds[s] == i) continue;
-      const double cost = rigidity(rig, at(pairs, seeds[s]), at(pairs, i)).cost;
+      const double cost =
+          rigidity(histories_[static_cast<std::size_t>(seeds[s])], histories_[static_cast<std::size_t>(i)]).cost;
       if (cost < best_cost) {
         best_cost = cost;
         best = s;
@@ -62,7 +101,8 @@ void Grouping::propose_by_rigidity(const StereoRig& rig, PointPairs pairs, std::
     seed_groups_[best].push_back(i);
   }
   for (std::size_t s = 0; s < seed_groups_.size(); ++s) {
-    const auto motion = propose_motion(rig, pairs, seed_groups_[s], seed * 64 + s, config_.proposal);
+    if (is_known(rig, pairs, seed_groups_[s], known_motions)) continue;
+    const auto motion = propose_motion(rig, pairs, seed_groups_[s], seed * 64 + s, config_.proposal, proposal_points_);
     if (motion) motions_.push_back(*motion);
   }
 }
@@ -70,24 +110,23 @@ void Grouping::propose_by_rigidity(const StereoRig& rig, PointPairs pairs, std::
 void Grouping::propose_by_sampling(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
                                    std::uint64_t seed) {
   for (std::uint64_t s = 0; s < kSampledProposals; ++s) {
-    const auto motion = propose_motion(rig, pairs, candidates, seed * 64 + s, config_.proposal);
+    const auto motion = propose_motion(rig, pairs, candidates, seed * 64 + s, config_.proposal, proposal_points_);
     if (motion) motions_.push_back(*motion);
   }
 }
 
-void Grouping::score(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
-                     const Rigid3& motion, std::vector<float>& chi2) const {
-  chi2.resize(candidates.size());
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    chi2[c] = static_cast<float>(transfer_chi2(rig, motion, at(pairs, candidates[c])));
-  }
+void Grouping::score(const StereoRig& rig, const Rigid3& motion, std::vector<float>& chi2) {
+  const auto of_candidates = candidate_points_.chi2(rig, motion);
+  chi2.resize(of_candidates.size());
+  std::transform(of_candidates.begin(), of_candidates.end(), chi2.begin(),
+                 [](double c) { return static_cast<float>(c); });
 }
 
 // Greedy cover: the motion that explains most of what is left, refined on it, claims it. Proposals that agree with
 // one already taken find nothing left: that is the consolidation of groups with equal motions.
 void Grouping::claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates) {
   motion_chi2_.resize(std::max(motion_chi2_.size(), motions_.size()));
-  for (std::size_t m = 0; m < motions_.size(); ++m) score(rig, pairs, candidates, motions_[m], motion_chi2_[m]);
+  for (std::size_t m = 0; m < motions_.size(); ++m) score(rig, motions_[m], motion_chi2_[m]);
   std::vector<float>& refined_chi2 = motion_chi2_.emplace_back();
   while (static_cast<int>(partition_.groups.size()) < config_.max_groups) {
     std::size_t best = motions_.size();
@@ -112,7 +151,7 @@ void Grouping::claim_groups(const StereoRig& rig, PointPairs pairs, std::span<co
     if (static_cast<int>(group.members.size()) < config_.min_group_points) break;
     const MotionFit fit = two_frame_ba_.run(rig, pairs, group.members, motions_[best]);
     group.H_curr_prev = fit.outcome == StageOutcome::degenerate ? motions_[best] : fit.H_curr_prev;
-    score(rig, pairs, candidates, group.H_curr_prev, refined_chi2);
+    score(rig, group.H_curr_prev, refined_chi2);
     const auto number = static_cast<std::int32_t>(partition_.groups.size());
     int claimed = 0;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
@@ -161,7 +200,7 @@ void Grouping::reassign(const StereoRig& rig, PointPairs pairs, std::span<const 
   if (groups == 0) return;
   motion_chi2_.resize(std::max(motion_chi2_.size(), groups));
   for (std::size_t g = 0; g < groups; ++g) {
-    score(rig, pairs, candidates, partition_.groups[g].H_curr_prev, motion_chi2_[g]);
+    score(rig, partition_.groups[g].H_curr_prev, motion_chi2_[g]);
   }
   const auto k = static_cast<std::size_t>(config_.neighbours);
   for (std::size_t c = 0; c < candidates.size(); ++c) {

@@ -6,7 +6,9 @@
 // Thread-bound; deterministic; bounded by the caps: O(seeds * points + motions * points).
 
 #include "core/motion/motion_proposal.h"
+#include "core/motion/rigidity.h"
 #include "core/motion/seed_points.h"
+#include "core/motion/transfer_points.h"
 #include "core/motion/two_frame_ba.h"
 
 namespace pelorus {
@@ -20,6 +22,7 @@ struct GroupingConfig {
   double smoothness_chi2 = 6.0;  // what disagreement with all neighbours costs, in units of chi-square
   int neighbours = 6;
   double neighbour_radius_px = 80.0;
+  double known_share = 0.8;  // of a proposed group that a known motion explains: it needs no motion of its own
 };
 
 class Grouping {
@@ -41,8 +44,11 @@ class Grouping {
                            std::uint64_t seed);
   void propose_by_sampling(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
                            std::uint64_t seed);
-  void score(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates, const Rigid3& motion,
-             std::vector<float>& chi2) const;
+  void propose_by_labels(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
+                         std::uint64_t seed);
+  [[nodiscard]] bool is_known(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> group,
+                              std::size_t known_motions);
+  void score(const StereoRig& rig, const Rigid3& motion, std::vector<float>& chi2);
   void claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates);
   void reassign(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates);
   void find_neighbours(PointPairs pairs, std::span<const PointIndex> candidates);
@@ -54,6 +60,10 @@ class Grouping {
   std::vector<Rigid3> motions_;  // proposals, then their chi-square per candidate
   std::vector<std::vector<float>> motion_chi2_;
   std::vector<std::vector<PointIndex>> seed_groups_;
+  std::vector<PointHistory> histories_;  // per pair
+  std::vector<PointIndex> labelled_;
+  TransferPoints candidate_points_;
+  TransferPoints proposal_points_;
   std::vector<std::int32_t> neighbours_;  // candidates.size() * config.neighbours, -1 = none
   std::vector<std::int32_t> label_;       // per candidate position
   Partition partition_;

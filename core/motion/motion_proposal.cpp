@@ -5,7 +5,6 @@
 #include <algorithm>
 
 #include "core/geometry/rigid_fit.h"
-#include "core/motion/stereo_transfer.h"
 
 namespace pelorus {
 namespace {
@@ -37,15 +36,9 @@ bool polish(const StereoRig& rig, PointPairs pairs, const std::array<PointIndex,
   return true;
 }
 
-double truncated_score(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> members, const Rigid3& H,
-                       const MotionProposalConfig& config) {
-  const auto wanted = static_cast<std::size_t>(config.scored_points);
-  const std::size_t stride = std::max<std::size_t>(1, members.size() / wanted);
+double truncated_score(const StereoRig& rig, TransferPoints& scored, const Rigid3& H, double gate_chi2) {
   double score = 0;
-  for (std::size_t i = 0; i < members.size(); i += stride) {
-    const double chi2 = transfer_chi2(rig, H, pairs[static_cast<std::size_t>(members[i])]);
-    score += std::max(0.0, config.gate_chi2 - chi2);
-  }
+  for (const double chi2 : scored.chi2(rig, H)) score += std::max(0.0, gate_chi2 - chi2);
   return score;
 }
 
@@ -75,8 +68,10 @@ std::optional<Rigid3> motion_of_three(const StereoRig& rig, PointPairs pairs, co
 }
 
 std::optional<Rigid3> propose_motion(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> members,
-                                     std::uint64_t seed, const MotionProposalConfig& config) {
+                                     std::uint64_t seed, const MotionProposalConfig& config, TransferPoints& scored) {
   if (members.size() < 3) return std::nullopt;
+  const auto wanted = static_cast<std::size_t>(config.scored_points);
+  scored.assign(rig, pairs, members, std::max<std::size_t>(1, members.size() / wanted));
   SampleSequence sequence(seed);
   std::optional<Rigid3> best;
   double best_score = 0;
@@ -87,7 +82,7 @@ std::optional<Rigid3> propose_motion(const StereoRig& rig, PointPairs pairs, std
     if (sample[0] == sample[1] || sample[1] == sample[2] || sample[0] == sample[2]) continue;
     const std::optional<Rigid3> H = motion_of_three(rig, pairs, sample);
     if (!H) continue;
-    const double score = truncated_score(rig, pairs, members, *H, config);
+    const double score = truncated_score(rig, scored, *H, config.gate_chi2);
     if (score > best_score) {
       best_score = score;
       best = H;

@@ -1,12 +1,12 @@
 #pragma once
 // A motion for a set of points of which an unknown part moves rigidly together: minimal samples of three points,
 // closed form, polished in pixels, scored by truncated stereo transfer error (method section 4). Deterministic:
-// the samples depend on the seed given and the points only. No allocation. O(samples * points).
+// the samples depend on the seed given and the points only. O(samples * points).
 
 #include <cstdint>
 #include <optional>
 
-#include "core/model/stage_data.h"
+#include "core/motion/transfer_points.h"
 
 namespace pelorus {
 
@@ -31,9 +31,9 @@ class SampleSequence {
 [[nodiscard]] std::optional<Rigid3> motion_of_three(const StereoRig& rig, PointPairs pairs,
                                                     const std::array<PointIndex, 3>& sample);
 
-// Best-scoring H_curr_prev over the samples drawn from `members`; empty with fewer than three.
+// Best-scoring H_curr_prev over the samples drawn from `members`; empty with fewer than three. `scored` is storage.
 [[nodiscard]] std::optional<Rigid3> propose_motion(const StereoRig& rig, PointPairs pairs,
                                                    std::span<const PointIndex> members, std::uint64_t seed,
-                                                   const MotionProposalConfig& config);
+                                                   const MotionProposalConfig& config, TransferPoints& scored);
 
 }  // namespace pelorus

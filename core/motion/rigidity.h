@@ -16,6 +16,19 @@ struct RigidityEvidence {
   double cost = 0;
 };
 
-[[nodiscard]] RigidityEvidence rigidity(const StereoRig& rig, const PointPair& seed, const PointPair& point);
+// What the lengths to a point need of it, at every frame it was measured in; made once per point and step.
+struct PointHistory {
+  struct Place {
+    Eigen::Vector3d p_cam = Eigen::Vector3d::Zero();
+    double m_per_px = 0;       // z / f
+    double per_disparity = 0;  // 1 / disparity, 1/px
+  };
+  std::array<Place, kPastFrames + 2> places;  // [0] now, [k] k frames back
+  int size = 0;
+  double variance_px2 = 0;
+};
+[[nodiscard]] PointHistory history_of(const StereoRig& rig, const PointPair& pair);
+
+[[nodiscard]] RigidityEvidence rigidity(const PointHistory& seed, const PointHistory& point);
 
 }  // namespace pelorus

@@ -66,7 +66,7 @@ StageOutcome Membership::run(const StereoRig& rig, PointPairs pairs, std::span<c
   const bool enough = former_ >= static_cast<std::size_t>(config_.min_points);
   const auto deciding = std::span<const PointIndex>(candidates_).first(enough ? former_ : candidates_.size());
   Rigid3 H_start = body.H_curr_prev;
-  const auto fresh = propose_motion(rig, pairs, deciding, seed, config_.proposal);
+  const auto fresh = propose_motion(rig, pairs, deciding, seed, config_.proposal, proposal_points_);
   if (fresh && explained(rig, pairs, deciding, *fresh, config_.gate_chi2) >
                    explained(rig, pairs, deciding, H_start, config_.gate_chi2)) {
     H_start = *fresh;

@@ -33,6 +33,7 @@ class Membership {
 
   MembershipConfig config_;
   TwoFrameBa two_frame_ba_;
+  TransferPoints proposal_points_;
   std::vector<PointIndex> candidates_;  // former members first
   std::size_t former_ = 0;
   std::vector<Eigen::Vector3d> hull_points_;

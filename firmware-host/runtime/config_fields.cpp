@@ -110,6 +110,7 @@ void list(FieldList& f, GroupingConfig& c) {
   f.add("smoothness_chi2", c.smoothness_chi2, 0, kMaxChi2);
   f.add("neighbors", c.neighbours, 0, 32);
   f.add("neighbor_radius_px", c.neighbour_radius_px, 1, 1000);
+  f.add("known_share", c.known_share, 0, 2);
 }
 
 void list(FieldList& f, StaticGroupConfig& c) {

@@ -200,7 +200,7 @@ TEST(Rigidity, PointsOfOneBodyKeepTheirDistanceAndThoseOfTwoDoNot) {
   int same_cut = 0, same = 0, cross_cut = 0, cross = 0;
   for (std::size_t a = 0; a < view.pairs.size(); ++a) {
     for (std::size_t b = a + 1; b < view.pairs.size(); ++b) {
-      const RigidityEvidence evidence = rigidity(kRig, view.pairs[a], view.pairs[b]);
+      const RigidityEvidence evidence = rigidity(history_of(kRig, view.pairs[a]), history_of(kRig, view.pairs[b]));
       const bool cut = evidence.change_m > 3 * evidence.sigma_m;
       const bool one = view.body_of[a] == view.body_of[b];
       (one ? same : cross) += 1;
@@ -218,7 +218,8 @@ TEST(Rigidity, HistoryFindsWhatOneStepCannot) {
   world.add_body(20, {0.4, 0, 2.0}, 0.2, twist(-0.004, 0, 0, 0, 0, 0));
   const auto significance = [&](int frames) {
     const WorldView view = world.observe(frames, 0, 0.25);
-    const RigidityEvidence evidence = rigidity(kRig, view.pairs.front(), view.pairs.back());
+    const RigidityEvidence evidence =
+        rigidity(history_of(kRig, view.pairs.front()), history_of(kRig, view.pairs.back()));
     return evidence.change_m / evidence.sigma_m;
   };
   EXPECT_NEAR(significance(6) / significance(2), 5.0, 0.5);

@@ -119,7 +119,8 @@ TEST(TwoFrameBa, ThirtyPercentOutliersDoNotMoveTheFit) {
     z.z() = std::min(z.z(), z.x() - 5);
     view.pairs[i].curr = {z, kRig.triangulate(z)};
   }
-  const auto start = propose_motion(kRig, view.pairs, view.all(), 3, {});
+  TransferPoints scored;
+  const auto start = propose_motion(kRig, view.pairs, view.all(), 3, {}, scored);
   ASSERT_TRUE(start.has_value());
   const MotionFit found = fit(view, view.all(), *start);
   EXPECT_LT(nees(view.H_curr_prev(1), found), kChi2_6dof_9999);
@@ -151,10 +152,11 @@ TEST(MotionProposal, IsTheMotionOfTheMajorityAmongMixedPoints) {
   world.add_body(30, {0.5, 0, 2.5}, 0.3, twist(0.03, 0, 0, 0, 0.02, 0));
   world.add_body(20, {-0.5, 0, 2.0}, 0.3, twist(0, -0.04, 0, 0, 0, 0));
   const WorldView view = world.observe(2, 0, 0.1);
-  const auto H = propose_motion(kRig, view.pairs, view.all(), 7, {});
+  TransferPoints scored;
+  const auto H = propose_motion(kRig, view.pairs, view.all(), 7, {}, scored);
   ASSERT_TRUE(H.has_value());
   EXPECT_LT(se3_log(*H * view.H_curr_prev(1).inverse()).norm(), 1e-6);
-  EXPECT_FALSE(propose_motion(kRig, view.pairs, std::vector<PointIndex>{0, 1}, 7, {}).has_value());
+  EXPECT_FALSE(propose_motion(kRig, view.pairs, std::vector<PointIndex>{0, 1}, 7, {}, scored).has_value());
 }
 
 TEST(RigidFit, RecoversTheMotionAndRefusesALineAndTwoPoints) {
