@@ -120,6 +120,7 @@ void Registry::give_birth(const StereoRig& rig, PointPairs pairs, const Group& g
   body.T_world_obj = Rigid3::Identity();
   body.T_world_obj.translation() = robust_centroid(p_world);
   body.birth_centroid_world = body.T_world_obj.translation();
+  body.birth_camera_world = world.T_world_prev.translation();
   body.T_cam_obj = world.T_world_prev.inverse() * body.T_world_obj;
   observations_.clear();
   for (const PointIndex i : group.members) {

@@ -13,10 +13,15 @@
 
 namespace pelorus {
 
-// Displacement since birth, in deviations and in pixels: beyond noise, and beyond any systematic error of matching.
+// Displacement since birth, in deviations, in pixels and against the camera's own: beyond noise, and beyond any
+// systematic error of matching and calibration.
 bool Registry::moved_significantly(const StereoRig& rig, const WorldStep& world, const MovingBody& body) const {
   const Eigen::Vector3d p_now_world = body.T_world_obj.translation();
   const Eigen::Vector3d moved_world = p_now_world - body.birth_centroid_world;
+  const double ego_m = (world.T_world_curr.translation() - body.birth_camera_world).norm();
+  const double haste =
+      std::max(1.0, static_cast<double>(config_.confirm_ego_frames) / std::max(1, body.frames_measured));
+  if (moved_world.norm() < haste * config_.confirm_ego_share * ego_m) return false;
   const Rigid3 T_cam_world = world.T_world_curr.inverse();
   const Eigen::Vector3d p_now = T_cam_world * p_now_world;
   const Eigen::Vector3d p_then = T_cam_world * body.birth_centroid_world;

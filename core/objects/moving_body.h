@@ -44,6 +44,7 @@ struct MovingBody {
   Eigen::Vector3d centroid_obj = Eigen::Vector3d::Zero();
   Eigen::Vector3d extent_m = Eigen::Vector3d::Zero();
   Eigen::Vector3d birth_centroid_world = Eigen::Vector3d::Zero();
+  Eigen::Vector3d birth_camera_world = Eigen::Vector3d::Zero();
   BodyWindow window;
 };
 

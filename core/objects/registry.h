@@ -23,6 +23,10 @@ struct RegistryConfig {
   double evidence_cap = 20.0;       // per point and frame
   double confirm_sigmas = 6.0;      // displacement since birth over its deviation
   double confirm_move_px = 2.0;     // and at least this much in the image, beyond any systematic matching error
+  // And this share of the camera's own way meanwhile: what an error of calibration (or refraction) makes of points at
+  // rest is in proportion to it. More, in inverse proportion, of a body seen in fewer than confirm_ego_frames.
+  double confirm_ego_share = 0.05;
+  int confirm_ego_frames = 12;
   double tentative_patience_frames = 2;
   double coast_s = 4.0;                  // out of sight before a confirmed body ends
   double sigma_acceleration_mps2 = 0.3;  // growth of the covariance while coasting

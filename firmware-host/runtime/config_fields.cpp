@@ -230,6 +230,8 @@ void list(FieldList& f, RegistryConfig& c) {
   f.add("evidence_cap", c.evidence_cap, 0, 1e6);
   f.add("confirm_sigmas", c.confirm_sigmas, 0, 1000);
   f.add("confirm_move_px", c.confirm_move_px, 0, 1000);
+  f.add("confirm_ego_share", c.confirm_ego_share, 0, 1);
+  f.add("confirm_ego_frames", c.confirm_ego_frames, 1, 1000);
   f.add("tentative_patience_frames", c.tentative_patience_frames, 0, 1000);
   f.add("coast_s", c.coast_s, 0, 600);
   f.add("sigma_acceleration_mps2", c.sigma_acceleration_mps2, 1e-4, 1000);
