@@ -47,6 +47,8 @@ struct PointPair {
   int past_size = 0;
 };
 
+inline constexpr std::size_t kMaxPoints = 2000;  // of a step, whatever the configuration says
+
 using PointIndex = std::int32_t;  // into the PointPairs of the step
 using PointPairs = std::span<const PointPair>;
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <vector>
+
+#include "core/base/fixed_vector.h"
 
 namespace pelorus {
 namespace {
@@ -11,29 +12,30 @@ const Eigen::Vector3d& place(PointPairs pairs, PointIndex i) { return pairs[stat
 
 // Median distance of a member to its nearest other one.
 double typical_spacing_m(PointPairs pairs, std::span<const PointIndex> members) {
-  std::vector<double> nearest;
-  for (const PointIndex a : members) {
-    double best = 1e30;
+  FixedVector<double, kMaxPoints> nearest(members.size(), 1e30);
+  for (std::size_t m = 0; m < members.size(); ++m) {
     for (const PointIndex b : members) {
-      if (a != b) best = std::min(best, (place(pairs, a) - place(pairs, b)).squaredNorm());
+      const double square_m2 = (place(pairs, members[m]) - place(pairs, b)).squaredNorm();
+      if (b != members[m]) nearest[m] = std::min(nearest[m], square_m2);
     }
-    nearest.push_back(best);
   }
-  const auto middle = nearest.begin() + static_cast<std::ptrdiff_t>(nearest.size() / 2);
+  double* const middle = nearest.data() + nearest.size() / 2;
   std::nth_element(nearest.begin(), middle, nearest.end());
   return std::sqrt(*middle);
 }
 
 // Renumbers parts by size, largest first; equal sizes keep the order of their first members.
 int rank_by_size(std::span<std::int32_t> part, int parts) {
-  std::vector<int> size(static_cast<std::size_t>(parts), 0);
+  FixedVector<int, kMaxPoints> size(static_cast<std::size_t>(parts), 0);
   for (const std::int32_t p : part) ++size[static_cast<std::size_t>(p)];
-  std::vector<std::int32_t> order(size.size());
+  FixedVector<std::int32_t, kMaxPoints> order(size.size());
   for (std::size_t k = 0; k < order.size(); ++k) order[k] = static_cast<std::int32_t>(k);
-  std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return size[static_cast<std::size_t>(a)] > size[static_cast<std::size_t>(b)];
+  std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    const int size_a = size[static_cast<std::size_t>(a)];
+    const int size_b = size[static_cast<std::size_t>(b)];
+    return size_a != size_b ? size_a > size_b : a < b;
   });
-  std::vector<std::int32_t> rank(order.size());
+  FixedVector<std::int32_t, kMaxPoints> rank(order.size());
   for (std::size_t k = 0; k < order.size(); ++k)
     rank[static_cast<std::size_t>(order[k])] = static_cast<std::int32_t>(k);
   for (std::int32_t& p : part) p = rank[static_cast<std::size_t>(p)];
@@ -55,7 +57,7 @@ int separate_parts(const StereoRig& rig, PointPairs pairs, std::span<const Point
   const double gap_m = std::max(
       {config.min_gap_m, config.gap_spacings * typical_spacing_m(pairs, members), config.gap_sigmas * sigma_m});
   int parts = 0;
-  std::vector<std::size_t> open;
+  FixedVector<std::size_t, kMaxPoints> open;
   for (std::size_t start = 0; start < members.size(); ++start) {
     if (part[start] >= 0) continue;
     part[start] = parts;

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 
+#include "core/base/check.h"
+#include "core/base/fixed_vector.h"
 #include "core/motion/stereo_transfer.h"
 
 namespace pelorus {
 namespace {
 
+constexpr std::size_t kMaxNeighbours = 64;
 constexpr int kSampledProposals = 24;  // as many as a typical number of seeds, for a fair ablation
 
 const PointPair& at(PointPairs pairs, PointIndex i) { return pairs[static_cast<std::size_t>(i)]; }
@@ -15,10 +18,41 @@ const PointPair& at(PointPairs pairs, PointIndex i) { return pairs[static_cast<s
 
 Grouping::Grouping(const GroupingConfig& config, const SeedPointsConfig& seeds, const TwoFrameBaConfig& ba,
                    int capacity)
-    : config_(config), seed_points_(seeds), two_frame_ba_(ba, capacity) {}
+    : config_(config), seed_points_(seeds, capacity), two_frame_ba_(ba, capacity) {
+  PELORUS_CHECK(config.neighbours >= 0 && config.neighbours <= static_cast<int>(kMaxNeighbours), "bad neighbours");
+  const auto points = static_cast<std::size_t>(capacity);
+  const auto proposals = static_cast<std::size_t>(std::max(seeds.columns * seeds.rows, kSampledProposals));
+  const auto motions = proposals + 2 * (kMaxObjects + 1);
+  motions_.reserve(motions);
+  motion_chi2_.resize(motions);
+  for (auto& chi2 : motion_chi2_) chi2.reserve(points);
+  refined_chi2_.reserve(points);
+  seed_groups_.resize(proposals);
+  for (auto& group : seed_groups_) group.reserve(points);
+  spare_.resize(static_cast<std::size_t>(config.max_groups) + 1);
+  for (auto& members : spare_) members.reserve(points);
+  spare_.reserve(2 * spare_.size());
+  partition_.groups.reserve(static_cast<std::size_t>(config.max_groups));
+  partition_.group_of.reserve(points);
+  histories_.reserve(points);
+  labelled_.reserve(points);
+  label_.reserve(points);
+  neighbours_.reserve(points * static_cast<std::size_t>(config.neighbours));
+  candidate_points_.reserve(points);
+  proposal_points_.reserve(points);
+}
+
+Group Grouping::empty_group() {
+  Group group;
+  group.members = std::move(spare_.back());
+  group.members.clear();
+  spare_.pop_back();
+  return group;
+}
 
 const Partition& Grouping::run(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
                                std::span<const Rigid3> prior_motions, std::uint64_t seed, const Options& options) {
+  for (Group& group : partition_.groups) spare_.push_back(std::move(group.members));
   partition_.groups.clear();
   partition_.group_of.assign(pairs.size(), -1);
   label_.assign(candidates.size(), -1);
@@ -84,7 +118,6 @@ void Grouping::propose_by_rigidity(const StereoRig& rig, PointPairs pairs, std::
   const auto seeds = seed_points_.run(rig, pairs, candidates);
   histories_.resize(pairs.size());
   for (const PointIndex i : candidates) histories_[static_cast<std::size_t>(i)] = history_of(rig, at(pairs, i));
-  seed_groups_.resize(seeds.size());
   for (auto& group : seed_groups_) group.clear();
   for (const PointIndex i : candidates) {
     std::size_t best = 0;
@@ -100,7 +133,7 @@ void Grouping::propose_by_rigidity(const StereoRig& rig, PointPairs pairs, std::
     }
     seed_groups_[best].push_back(i);
   }
-  for (std::size_t s = 0; s < seed_groups_.size(); ++s) {
+  for (std::size_t s = 0; s < seeds.size(); ++s) {
     if (is_known(rig, pairs, seed_groups_[s], known_motions)) continue;
     const auto motion = propose_motion(rig, pairs, seed_groups_[s], seed * 64 + s, config_.proposal, proposal_points_);
     if (motion) motions_.push_back(*motion);
@@ -125,9 +158,7 @@ void Grouping::score(const StereoRig& rig, const Rigid3& motion, std::vector<flo
 // Greedy cover: the motion that explains most of what is left, refined on it, claims it. Proposals that agree with
 // one already taken find nothing left: that is the consolidation of groups with equal motions.
 void Grouping::claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates) {
-  motion_chi2_.resize(std::max(motion_chi2_.size(), motions_.size()));
   for (std::size_t m = 0; m < motions_.size(); ++m) score(rig, motions_[m], motion_chi2_[m]);
-  std::vector<float>& refined_chi2 = motion_chi2_.emplace_back();
   while (static_cast<int>(partition_.groups.size()) < config_.max_groups) {
     std::size_t best = motions_.size();
     double best_score = 0;
@@ -142,20 +173,23 @@ void Grouping::claim_groups(const StereoRig& rig, PointPairs pairs, std::span<co
       }
     }
     if (best == motions_.size()) break;
-    Group group;
+    Group group = empty_group();
     for (std::size_t c = 0; c < candidates.size(); ++c) {
       if (label_[c] < 0 && static_cast<double>(motion_chi2_[best][c]) < config_.gate_chi2) {
         group.members.push_back(candidates[c]);
       }
     }
-    if (static_cast<int>(group.members.size()) < config_.min_group_points) break;
+    if (static_cast<int>(group.members.size()) < config_.min_group_points) {
+      spare_.push_back(std::move(group.members));
+      break;
+    }
     const MotionFit fit = two_frame_ba_.run(rig, pairs, group.members, motions_[best]);
     group.H_curr_prev = fit.outcome == StageOutcome::degenerate ? motions_[best] : fit.H_curr_prev;
-    score(rig, group.H_curr_prev, refined_chi2);
+    score(rig, group.H_curr_prev, refined_chi2_);
     const auto number = static_cast<std::int32_t>(partition_.groups.size());
     int claimed = 0;
     for (std::size_t c = 0; c < candidates.size(); ++c) {
-      if (label_[c] >= 0 || static_cast<double>(refined_chi2[c]) >= config_.gate_chi2) continue;
+      if (label_[c] >= 0 || static_cast<double>(refined_chi2_[c]) >= config_.gate_chi2) continue;
       label_[c] = number;
       ++claimed;
     }
@@ -163,18 +197,18 @@ void Grouping::claim_groups(const StereoRig& rig, PointPairs pairs, std::span<co
       for (auto& label : label_) {
         if (label == number) label = -1;
       }
+      spare_.push_back(std::move(group.members));
       break;
     }
     partition_.groups.push_back(std::move(group));
   }
-  motion_chi2_.pop_back();
   collect_members(candidates);
 }
 
 void Grouping::find_neighbours(PointPairs pairs, std::span<const PointIndex> candidates) {
   const auto k = static_cast<std::size_t>(config_.neighbours);
   neighbours_.assign(candidates.size() * k, -1);
-  std::vector<double> nearest(k);
+  FixedVector<double, kMaxNeighbours> nearest(k);
   const double radius2 = config_.neighbour_radius_px * config_.neighbour_radius_px;
   for (std::size_t a = 0; a < candidates.size(); ++a) {
     std::fill(nearest.begin(), nearest.end(), radius2);
@@ -198,7 +232,6 @@ void Grouping::find_neighbours(PointPairs pairs, std::span<const PointIndex> can
 void Grouping::reassign(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates) {
   const auto groups = partition_.groups.size();
   if (groups == 0) return;
-  motion_chi2_.resize(std::max(motion_chi2_.size(), groups));
   for (std::size_t g = 0; g < groups; ++g) {
     score(rig, partition_.groups[g].H_curr_prev, motion_chi2_[g]);
   }

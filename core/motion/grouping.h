@@ -51,6 +51,7 @@ class Grouping {
   void score(const StereoRig& rig, const Rigid3& motion, std::vector<float>& chi2);
   void claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates);
   void reassign(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates);
+  [[nodiscard]] Group empty_group();
   void find_neighbours(PointPairs pairs, std::span<const PointIndex> candidates);
   void collect_members(std::span<const PointIndex> candidates);
 
@@ -59,6 +60,8 @@ class Grouping {
   TwoFrameBa two_frame_ba_;
   std::vector<Rigid3> motions_;  // proposals, then their chi-square per candidate
   std::vector<std::vector<float>> motion_chi2_;
+  std::vector<float> refined_chi2_;
+  std::vector<std::vector<PointIndex>> spare_;  // members' storage of groups of the past
   std::vector<std::vector<PointIndex>> seed_groups_;
   std::vector<PointHistory> histories_;  // per pair
   std::vector<PointIndex> labelled_;

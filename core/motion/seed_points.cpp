@@ -11,9 +11,14 @@ double distance2_px(const PointPair& a, const PointPair& b) {
 
 }  // namespace
 
+SeedPoints::SeedPoints(const SeedPointsConfig& config, int capacity) : config_(config) {
+  cells_.resize(static_cast<std::size_t>(config.columns * config.rows));
+  for (auto& cell : cells_) cell.reserve(static_cast<std::size_t>(capacity));
+  seeds_.reserve(cells_.size());
+}
+
 std::span<const PointIndex> SeedPoints::run(const StereoRig& rig, PointPairs pairs,
                                             std::span<const PointIndex> candidates) {
-  cells_.resize(static_cast<std::size_t>(config_.columns * config_.rows));
   for (auto& cell : cells_) cell.clear();
   for (const PointIndex i : candidates) {
     const auto& z_px = pairs[static_cast<std::size_t>(i)].curr.z_px;

@@ -18,7 +18,7 @@ struct SeedPointsConfig {
 
 class SeedPoints {
  public:
-  explicit SeedPoints(const SeedPointsConfig& config) : config_(config) {}
+  SeedPoints(const SeedPointsConfig& config, int capacity);
   // Seeds among `candidates`, in the order of the cells. Valid until the next call.
   [[nodiscard]] std::span<const PointIndex> run(const StereoRig& rig, PointPairs pairs,
                                                 std::span<const PointIndex> candidates);

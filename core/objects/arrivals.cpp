@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/fixed_vector.h"
 #include "core/motion/stereo_transfer.h"
 #include "core/objects/registry.h"
 #include "core/objects/spread.h"
@@ -24,7 +25,6 @@ void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const Poi
   if (steps.merge) split_apart(rig, pairs, owner);
   if (steps.reidentification) recognise_tentative(rig, pairs, track_of_pair, world, owner);
   const std::size_t known = bodies_.size();
-  Group part_group;
   for (const Group& group : groups.groups) {
     part_.resize(group.members.size());
     const int parts = steps.merge ? separate_parts(rig, pairs, group.members, config_.clusters, part_) : 1;
@@ -39,13 +39,13 @@ void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const Poi
                         : size_of(0) >= config_.min_share_of_one * all ? 1
                                                                        : 0;
     for (int p = 0; p < adopted && size_of(p) >= config_.min_points; ++p) {
-      part_group = group;
+      part_group_ = group;
       std::size_t kept = 0;
       for (std::size_t m = 0; m < group.members.size(); ++m) {
-        if (part_[m] == p) part_group.members[kept++] = group.members[m];
+        if (part_[m] == p) part_group_.members[kept++] = group.members[m];
       }
-      part_group.members.resize(kept);
-      adopt_group(rig, pairs, roles, part_group, track_of_pair, world, steps, known, owner);
+      part_group_.members.resize(kept);
+      adopt_group(rig, pairs, roles, part_group_, track_of_pair, world, steps, known, owner);
     }
   }
 }
@@ -54,7 +54,7 @@ void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const Poi
 // of it shows, until it is confirmed.
 void Registry::recognise_tentative(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
                                    const WorldStep& world, std::span<BodyId> owner) {
-  Group group;
+  Group& group = part_group_;
   for (MovingBody& body : bodies_) {
     if (body.phase != ObjectPhase::tentative || !body.measured) continue;
     group.members = body.members;
@@ -106,13 +106,15 @@ void Registry::adopt_group(const StereoRig& rig, PointPairs pairs, std::span<con
 // Paper section 4: the frame of the object is fixed at its birth b; here with axes parallel to the world's.
 void Registry::give_birth(const StereoRig& rig, PointPairs pairs, const Group& group, const WorldStep& world,
                           std::span<BodyId> owner) {
-  MovingBody body(window_config_);
+  MovingBody body = std::move(spare_.back());
+  spare_.pop_back();
+  body.forget();
   body.id = BodyId{next_id_++};
   body.first_seen = world.time;
   body.members = group.members;
   body.H_curr_prev = group.H_curr_prev;
   body.measured = true;
-  std::vector<Eigen::Vector3d> p_world;
+  FixedVector<Eigen::Vector3d, kMaxPoints> p_world;
   for (const PointIndex i : group.members) {
     p_world.push_back(world.T_world_prev * at(pairs, i).prev.p_cam);
     owner[static_cast<std::size_t>(i)] = body.id;

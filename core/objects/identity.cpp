@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/fixed_vector.h"
 #include "core/geometry/hull.h"
 #include "core/motion/stereo_transfer.h"
 
@@ -10,7 +11,7 @@ namespace {
 
 // Least distance of the group's points from the hull of the body's, at the previous position.
 double gap_to_body(PointPairs pairs, const Group& group, const MovingBody& body) {
-  std::vector<Eigen::Vector3d> hull;
+  FixedVector<Eigen::Vector3d, kMaxPoints> hull;
   for (const PointIndex i : body.members) hull.push_back(pairs[static_cast<std::size_t>(i)].prev.p_cam);
   double least_m = 1e30;
   for (const PointIndex i : group.members) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/base/fixed_vector.h"
 #include "core/geometry/hull.h"
 #include "core/motion/stereo_transfer.h"
 #include "core/objects/registry.h"
@@ -39,7 +40,7 @@ bool Registry::part_of_another(const MovingBody& body) const {
   return std::any_of(bodies_.begin(), bodies_.end(), [&](const MovingBody& other) {
     if (other.id == body.id || other.phase == ObjectPhase::tentative || !other.measured) return false;
     if (body.members.size() >= other.members.size()) return false;
-    std::vector<Eigen::Vector3d> hull;
+    FixedVector<Eigen::Vector3d, kMaxPoints> hull;
     for (const ModelPoint& point : other.model) hull.push_back(point.p_obj);
     return distance_to_hull(hull, other.T_world_obj.inverse() * center) <
            config_.part_reach_share * other.extent_m.norm();

@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
+#include "core/base/fixed_vector.h"
 #include "core/geometry/hull.h"
 
 namespace pelorus {
@@ -29,7 +30,7 @@ double motion_mismatch(const MovingBody& a, const MovingBody& b) {
 
 bool touching(PointPairs pairs, const MovingBody& a, const MovingBody& b, const MergeConfig& config) {
   if (a.members.empty() || b.members.empty()) return false;
-  std::vector<Eigen::Vector3d> hull;
+  FixedVector<Eigen::Vector3d, kMaxPoints> hull;
   for (const PointIndex i : a.members) hull.push_back(pairs[static_cast<std::size_t>(i)].curr.p_cam);
   const double gap_m = std::max(config.min_touch_m, config.touch_share * 0.5 * (a.extent_m.norm() + b.extent_m.norm()));
   return std::any_of(b.members.begin(), b.members.end(), [&](PointIndex i) {

@@ -2,6 +2,7 @@
 // A moving rigid body as the registry remembers it (paper 6.1, the table of objects; method section 8). Plain data
 // with its refinement window; indices are into the pairs of the present step.
 
+#include <utility>
 #include <vector>
 
 #include "core/frontend/surf.h"
@@ -22,6 +23,18 @@ struct ModelPoint {
 
 struct MovingBody {
   explicit MovingBody(const BodyWindowConfig& window_config) : window(window_config) {}
+  explicit MovingBody(BodyWindow&& kept) : window(std::move(kept)) {}
+  // As new, with the storage it has.
+  void forget() {
+    std::vector<PointIndex> kept_members = std::move(members);
+    std::vector<ModelPoint> kept_model = std::move(model);
+    *this = MovingBody(std::move(window));
+    window.clear();
+    members = std::move(kept_members);
+    members.clear();
+    model = std::move(kept_model);
+    model.clear();
+  }
 
   BodyId id;
   ObjectPhase phase = ObjectPhase::tentative;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/fixed_vector.h"
 #include "core/motion/stereo_transfer.h"
 #include "core/objects/spread.h"
 
@@ -40,9 +41,18 @@ Registry::Registry(const RegistryConfig& config, const MembershipConfig& members
       identity_(identity),
       merge_(merge),
       reidentification_(reidentification),
-      window_config_(window),
       two_frame_ba_(ba, capacity) {
   bodies_.reserve(kMaxObjects);
+  spare_.reserve(kMaxObjects);
+  for (int k = 0; k < kMaxObjects; ++k) {
+    MovingBody& body = spare_.emplace_back(window);
+    body.members.reserve(static_cast<std::size_t>(capacity));
+    body.model.reserve(static_cast<std::size_t>(config.max_model_points));
+  }
+  T_cam_obj_expected_.reserve(kMaxObjects);
+  part_.reserve(static_cast<std::size_t>(capacity));
+  part_group_.members.reserve(static_cast<std::size_t>(capacity));
+  alike_.reserve(kMaxObjects * kMaxObjects);
   observations_.reserve(static_cast<std::size_t>(capacity));
 }
 
@@ -86,11 +96,15 @@ void Registry::settle(const StereoRig& rig, PointPairs pairs, std::span<const Po
     }
   }
   if (steps.merge) merge_alike(pairs, owner);
-  std::erase_if(bodies_, [&](const MovingBody& body) {
-    const bool over = body.phase == ObjectPhase::ended;
-    if (over) release(body, owner);
-    return over;
-  });
+  for (std::size_t b = 0; b < bodies_.size();) {
+    if (bodies_[b].phase != ObjectPhase::ended) {
+      ++b;
+      continue;
+    }
+    release(bodies_[b], owner);
+    spare_.push_back(std::move(bodies_[b]));
+    bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(b));
+  }
 }
 
 void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
@@ -135,7 +149,7 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
 
 void Registry::remember_points(PointPairs pairs, std::span<const Track* const> track_of_pair, MovingBody& body) {
   const Rigid3 T_obj_cam = body.T_cam_obj.inverse();
-  std::vector<Eigen::Vector3d> p_obj;
+  FixedVector<Eigen::Vector3d, kMaxPoints> p_obj;
   for (const PointIndex i : body.members) {
     const PointPair& pair = at(pairs, i);
     const BodyPoint* refined = body.window.find(pair.track);

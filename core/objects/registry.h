@@ -108,9 +108,10 @@ class Registry {
   IdentityConfig identity_;
   MergeConfig merge_;
   ReidentificationConfig reidentification_;
-  BodyWindowConfig window_config_;
   TwoFrameBa two_frame_ba_;
   std::vector<MovingBody> bodies_;
+  std::vector<MovingBody> spare_;  // with their storage: births and ends do not touch the heap
+  Group part_group_;
   std::vector<Rigid3> T_cam_obj_expected_;
   std::vector<std::int32_t> part_;
   std::vector<WindowObservation> observations_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/fixed_vector.h"
 #include "core/geometry/hull.h"
 #include "core/geometry/rigid_fit.h"
 #include "core/motion/motion_proposal.h"
@@ -13,6 +14,7 @@ struct ModelMatch {
   Eigen::Vector3d p_obj;
   const PointPair* pair = nullptr;
 };
+using ModelMatches = FixedVector<ModelMatch, kMaxPoints>;
 
 double distance2(const SurfDescriptor& a, const SurfDescriptor& b) {
   double sum = 0;
@@ -40,9 +42,9 @@ double mean_miss_px(const StereoRig& rig, PointPairs pairs, const Group& group, 
   return sum_px / static_cast<double>(group.members.size());
 }
 
-std::vector<ModelMatch> match_model(PointPairs pairs, const Group& group, std::span<const Track* const> track_of_pair,
-                                    const MovingBody& body, const ReidentificationConfig& config) {
-  std::vector<ModelMatch> matches;
+ModelMatches match_model(PointPairs pairs, const Group& group, std::span<const Track* const> track_of_pair,
+                         const MovingBody& body, const ReidentificationConfig& config) {
+  ModelMatches matches;
   for (const PointIndex i : group.members) {
     const Track& track = *track_of_pair[static_cast<std::size_t>(i)];
     if (!track.has_descriptor) continue;
@@ -67,7 +69,7 @@ std::vector<ModelMatch> match_model(PointPairs pairs, const Group& group, std::s
   return matches;
 }
 
-int support(const StereoRig& rig, const std::vector<ModelMatch>& matches, const Rigid3& T_cam_obj, double gate_chi2) {
+int support(const StereoRig& rig, const ModelMatches& matches, const Rigid3& T_cam_obj, double gate_chi2) {
   int count = 0;
   for (const ModelMatch& m : matches) {
     const Eigen::Vector3d p_cam = T_cam_obj * m.p_obj;
@@ -81,7 +83,7 @@ int support(const StereoRig& rig, const std::vector<ModelMatch>& matches, const 
   return count;
 }
 
-std::optional<Rigid3> fit_pose(const StereoRig& rig, const std::vector<ModelMatch>& matches, std::uint64_t seed,
+std::optional<Rigid3> fit_pose(const StereoRig& rig, const ModelMatches& matches, std::uint64_t seed,
                                const ReidentificationConfig& config, int& best_support) {
   SampleSequence sequence(seed);
   std::optional<Rigid3> best;
@@ -101,7 +103,7 @@ std::optional<Rigid3> fit_pose(const StereoRig& rig, const std::vector<ModelMatc
     }
   }
   if (!best || best_support < 3) return std::nullopt;
-  std::vector<PointMatch> inliers;
+  FixedVector<PointMatch, kMaxPoints> inliers;
   for (const ModelMatch& m : matches) {
     const Eigen::Vector3d p_cam = *best * m.p_obj;
     if (p_cam.z() > 0.05 && (m.pair->curr.z_px - rig.project(p_cam)).squaredNorm() < config.gate_chi2) {
@@ -141,7 +143,7 @@ Reidentified recognise_motion(const StereoRig& rig, PointPairs pairs, const Grou
   const double static_px = mean_miss_px(rig, pairs, group, H_static);
   Reidentified found;
   double least_px = std::min(config.motion_px, config.motion_share * static_px);
-  std::vector<Eigen::Vector3d> hull;
+  FixedVector<Eigen::Vector3d, kMaxPoints> hull;
   for (std::size_t j = 0; j < bodies.size(); ++j) {
     const MovingBody& body = bodies[j];
     if (body.phase != ObjectPhase::coasting) continue;

@@ -3,8 +3,8 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
+#include "core/base/fixed_vector.h"
 #include "core/geometry/hull.h"
 
 namespace pelorus {
@@ -23,7 +23,7 @@ double spread_px(PointPairs pairs, std::span<const PointIndex> members) {
 }
 
 double static_inside(PointPairs pairs, std::span<const PointRole> roles, std::span<const PointIndex> members) {
-  std::vector<Eigen::Vector2d> points;
+  FixedVector<Eigen::Vector2d, kMaxPoints> points;
   for (const PointIndex i : members) points.push_back(pairs[static_cast<std::size_t>(i)].curr.z_px.head<2>());
   std::array<Eigen::Vector2d, 24> outline;
   const int corners = convex_outline(points, outline);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/base/check.h"
 #include "core/geometry/hull.h"
 #include "core/pipeline/state.h"
 
@@ -18,7 +19,23 @@ Pipeline::State::State(const PipelineConfig& c, const StereoRig& r)
       static_window(c.static_window),
       registry(c.registry, c.membership, c.identity, c.merge, c.reidentification, c.object_window, c.two_frame_ba,
                c.front_end.max_points),
-      sigma_px(c.ego_motion.start_sigma_px) {}
+      sigma_px(c.ego_motion.start_sigma_px) {
+  const auto points = static_cast<std::size_t>(c.front_end.max_points);
+  PELORUS_CHECK(points <= kMaxPoints, "front_end.max_points is over what a step can hold");
+  track_of_pair.reserve(points);
+  roles.reserve(points);
+  chi2_static.reserve(points);
+  owner.reserve(points);
+  fixed.reserve(points);
+  open.reserve(points);
+  predictions.reserve(kMaxObjects + 1);
+  residuals.reserve(points);
+  observations.reserve(points);
+  rejected.reserve(points);
+  refill_areas.reserve(kMaxObjects);
+  outline_points.reserve(std::max(points, static_cast<std::size_t>(c.registry.max_model_points)));
+  views.reserve(points);
+}
 
 void Pipeline::State::follow_bodies() {
   if (!started || !ego_found()) return;

@@ -62,9 +62,9 @@ void Pipeline::State::partition_coarsely() {
     if (count < priors.size()) priors[count++] = p.H_curr_prev;
   }
   const Grouping::Options options{config.steps.rigidity_grouping, config.steps.motion_reassignment};
-  coarse = grouping.run(rig, pairs, open, {priors.data(), count}, world.seed, options);
-  result.report.groups = static_cast<std::int32_t>(coarse.groups.size());
-  result.report[Stage::partition].outcome = coarse.groups.empty() ? StageOutcome::no_agreement : StageOutcome::ok;
+  coarse = &grouping.run(rig, pairs, open, {priors.data(), count}, world.seed, options);
+  result.report.groups = static_cast<std::int32_t>(coarse->groups.size());
+  result.report[Stage::partition].outcome = coarse->groups.empty() ? StageOutcome::no_agreement : StageOutcome::ok;
 }
 
 void Pipeline::State::find_world() {
@@ -72,13 +72,13 @@ void Pipeline::State::find_world() {
   std::optional<Rigid3> H_predicted;
   if (twist_known) H_predicted = predictions.front().H_curr_prev;
   const StaticChoice choice =
-      choose_static_group(rig, pairs, coarse, H_predicted, config.static_group, config.steps.static_criteria);
+      choose_static_group(rig, pairs, *coarse, H_predicted, config.static_group, config.steps.static_criteria);
   world_confidence = choice.world_confidence;
   if (choice.group < 0) {
     ego_outcome = StageOutcome::no_agreement;
     return;
   }
-  const Group& group = coarse.groups[static_cast<std::size_t>(choice.group)];
+  const Group& group = coarse->groups[static_cast<std::size_t>(choice.group)];
   if (static_cast<int>(group.members.size()) < config.ego_motion.min_static_points) {
     ego_outcome = StageOutcome::too_few_points;
     return;

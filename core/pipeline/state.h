@@ -50,7 +50,7 @@ struct Pipeline::State {
   // Of the present step.
   PointPairs pairs;
   std::vector<const Track*> track_of_pair;
-  Partition coarse;
+  const Partition* coarse = nullptr;  // of `grouping`
   std::vector<PointRole> roles;
   std::vector<double> chi2_static;
   std::vector<BodyId> owner;

@@ -8,6 +8,8 @@
 namespace pelorus {
 namespace {
 
+constexpr std::size_t kPointsPerChosen = 5;  // points remembered for each that is adjusted
+
 double robust_weight(double chi2, double scale) {
   const double s = 1.0 + chi2 / scale;
   return 1.0 / (s * s);
@@ -15,11 +17,15 @@ double robust_weight(double chi2, double scale) {
 
 }  // namespace
 
-BodyWindow::BodyWindow(const BodyWindowConfig& config) : config_(config) { clear(); }
+BodyWindow::BodyWindow(const BodyWindowConfig& config) : config_(config) {
+  frames_.reserve(kMaxWindowFrames);
+  points_.reserve(kPointsPerChosen * static_cast<std::size_t>(config.max_points));
+  blocks_.resize(static_cast<std::size_t>(config.max_points));
+  clear();
+}
 
 void BodyWindow::clear() {
   frames_.clear();
-  frames_.reserve(kMaxWindowFrames);
   points_.clear();
   free_slots_ = (1u << kMaxWindowFrames) - 1u;
   next_number_ = 0;
@@ -147,7 +153,7 @@ void BodyWindow::accumulate_prior() {
   }
 }
 
-void BodyWindow::apply_update(const Eigen::VectorXd& xi) {
+void BodyWindow::apply_update(const Unknowns& xi) {
   for (PointBlock& block : blocks_) {
     if (block.point < 0) break;
     Eigen::Vector3d b = block.b;
@@ -179,9 +185,9 @@ StageOutcome BodyWindow::adjust(const StereoRig& rig) {
     add_inertia();
     if (config_.acceleration_prior) accumulate_prior();
     reduced_.S.diagonal().array() += 1e-6;  // a frame without points must not break the others
-    const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> solver(reduced_.S);
+    const Eigen::LLT<Information, Eigen::Lower> solver(reduced_.S);
     if (solver.info() != Eigen::Success) return StageOutcome::degenerate;
-    const Eigen::VectorXd xi = solver.solve(reduced_.g);
+    const Unknowns xi = solver.solve(reduced_.g);
     if (!xi.allFinite() || xi.cwiseAbs().maxCoeff() > 1.0) return StageOutcome::degenerate;
     apply_update(xi);
     if (iteration + 1 == config_.iterations) measure_covariance();
@@ -191,14 +197,15 @@ StageOutcome BodyWindow::adjust(const StereoRig& rig) {
 }
 
 void BodyWindow::measure_covariance() {
-  const Eigen::LLT<Eigen::MatrixXd, Eigen::Lower> solver(reduced_.S);
+  const Eigen::LLT<Information, Eigen::Lower> solver(reduced_.S);
   const auto size = reduced_.S.rows();
   const int last = frames_.back().unknown;
   const int before = frames_[frames_.size() - 2].unknown;
-  Eigen::MatrixXd columns = Eigen::MatrixXd::Zero(size, 12);
+  using Columns = Eigen::Matrix<double, Eigen::Dynamic, 12, 0, kMaxWindowUnknowns, 12>;
+  Columns columns = Columns::Zero(size, 12);
   columns.block<6, 6>(6 * last, 0).setIdentity();
   if (before >= 0) columns.block<6, 6>(6 * before, 6).setIdentity();
-  const Eigen::MatrixXd cov = solver.solve(columns);
+  const Columns cov = solver.solve(columns);
   const double scale = std::max(0.01, sigma_scale_ * sigma_scale_);
   cov_T_cam_body_ = scale * cov.block<6, 6>(6 * last, 0);
   cov_H_ = cov_T_cam_body_;

@@ -28,6 +28,7 @@ struct BodyWindowConfig {
 };
 
 inline constexpr int kMaxWindowFrames = 16;
+inline constexpr int kMaxWindowUnknowns = 6 * kMaxWindowFrames;
 
 struct WindowObservation {
   TrackId track;
@@ -71,6 +72,10 @@ class BodyWindow {
   void remove(TrackId track);
 
  private:
+  // As large as the window may get, so that they need no heap.
+  using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxWindowUnknowns, kMaxWindowUnknowns>;
+  using Unknowns = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxWindowUnknowns, 1>;
+
   struct Frame {
     int slot = 0;
     Timestamp time;
@@ -89,13 +94,13 @@ class BodyWindow {
   void weigh_frames();
   void add_inertia();
   void accumulate_prior();
-  void apply_update(const Eigen::VectorXd& xi);
+  void apply_update(const Unknowns& xi);
   void judge_points(const StereoRig& rig);
   void measure_covariance();
 
   struct Reduced {
-    Eigen::MatrixXd S;
-    Eigen::VectorXd g;
+    Information S;
+    Unknowns g;
   };
   struct PointBlock {
     int point = 0;

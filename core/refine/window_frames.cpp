@@ -74,6 +74,7 @@ void BodyWindow::add_frame(const StereoRig& rig, Timestamp time, const Rigid3& T
     auto place = std::lower_bound(points_.begin(), points_.end(), observation.track,
                                   [](const BodyPoint& p, TrackId t) { return p.track < t; });
     if (place == points_.end() || place->track != observation.track) {
+      if (points_.size() == points_.capacity()) continue;  // full: newer points wait until older ones have gone
       BodyPoint point;
       point.z_px.fill(Eigen::Vector3d::Zero());
       point.track = observation.track;
@@ -101,7 +102,6 @@ void BodyWindow::choose_points() {
     sum += histogram[threshold];
     if (sum > config_.max_points) break;
   }
-  blocks_.resize(std::max(blocks_.size(), static_cast<std::size_t>(config_.max_points)));
   for (std::size_t i = 0; i < points_.size() && used < static_cast<std::size_t>(config_.max_points); ++i) {
     if (__builtin_popcount(points_[i].seen) < 2 || rank(points_[i]) < threshold) continue;
     blocks_[used++].point = static_cast<int>(i);

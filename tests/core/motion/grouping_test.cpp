@@ -229,7 +229,7 @@ TEST(SeedPoints, OnePerOccupiedCellAndTheBestMatchedOfEqualDensity) {
   WorldView view = PointWorld(300).observe(2, 0, 0.1);
   for (PointPair& pair : view.pairs) pair.match_error = 0.5;
   view.pairs[17].match_error = 0.0;
-  SeedPoints seed_points({});
+  SeedPoints seed_points({}, 100);
   const auto all = view.all();
   const auto seeds = seed_points.run(kRig, view.pairs, all);
   EXPECT_LE(seeds.size(), 48U);

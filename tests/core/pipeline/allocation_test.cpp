@@ -1,0 +1,115 @@
+// No heap on the per-frame path (ARCHITECTURE, threads and latency): the C allocator itself is replaced in this
+// program, so that every library is counted. Not built under sanitizers, which replace it too.
+
+#include <execinfo.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <atomic>
+
+#include "core/pipeline/pipeline.h"
+#include "tests/core/pipeline/board_world.h"
+
+extern "C" {
+void* __libc_malloc(std::size_t size);
+void* __libc_calloc(std::size_t count, std::size_t size);
+void* __libc_realloc(void* old, std::size_t size);
+void* __libc_memalign(std::size_t alignment, std::size_t size);
+}
+
+namespace {
+
+thread_local bool counting = false;
+std::atomic<int> allocations{0};
+
+// Says where the first ones come from; backtrace_symbols_fd does not allocate once its library is loaded.
+void note() {
+  if (!counting) return;
+  counting = false;
+  if (++allocations <= 5) {
+    void* frames[12];
+    const int depth = backtrace(frames, 12);
+    backtrace_symbols_fd(frames, depth, STDERR_FILENO);
+    (void)!write(STDERR_FILENO, "--\n", 3);
+  }
+  counting = true;
+}
+
+}  // namespace
+
+extern "C" {
+void* malloc(std::size_t size) {
+  note();
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t count, std::size_t size) {
+  note();
+  return __libc_calloc(count, size);
+}
+void* realloc(void* old, std::size_t size) {
+  note();
+  return __libc_realloc(old, size);
+}
+void* memalign(std::size_t alignment, std::size_t size) {
+  note();
+  return __libc_memalign(alignment, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  note();
+  return __libc_memalign(alignment, size);
+}
+int posix_memalign(void** out, std::size_t alignment, std::size_t size) {
+  note();
+  *out = __libc_memalign(alignment, size);
+  return *out == nullptr ? 12 : 0;
+}
+}
+
+namespace pelorus {
+namespace {
+
+constexpr int kRendered = 30;
+constexpr int kWarmUp = 10;
+constexpr int kCounted = 200;
+
+// There and back again, so that thirty rendered frames make a dive of any length; the board turns with the camera.
+int frame_shown(int step) {
+  const int place = step % (2 * (kRendered - 1));
+  return place < kRendered ? place : 2 * (kRendered - 1) - place;
+}
+
+TEST(Allocation, NoneInTwoHundredStepsWithABodyThatComesAndGoes) {
+  std::vector<test::StereoImages> images;
+  for (int frame = 0; frame < kRendered; ++frame) images.push_back(test::plane_with_board(frame, {}));
+  const test::StereoImages grey = test::grey();
+  Pipeline pipeline({}, test::kBoardRig);
+  void* loaded[2];
+  (void)backtrace(loaded, 2);
+  int with_objects = 0;
+  for (int step = 0; step < kWarmUp + kCounted; ++step) {
+    // A loss on the way, so that recovery is counted too.
+    const bool blind = step == 90 || step == 91;
+    const test::StereoImages& seen = blind ? grey : images[static_cast<std::size_t>(frame_shown(step))];
+    const StereoFrame frame{static_cast<std::uint64_t>(step), Timestamp{step * 100'000'000LL}, seen.left.view(),
+                            seen.right.view()};
+    counting = step >= kWarmUp;
+    const FrameResult& result = pipeline.step(frame);
+    counting = false;
+    with_objects += result.objects_size > 0;
+  }
+  EXPECT_GT(with_objects, 50);
+  EXPECT_EQ(allocations.load(), 0);
+}
+
+TEST(Allocation, TheCounterCounts) {
+  const int before = allocations.load();
+  counting = true;
+  std::vector<int>* made = new std::vector<int>(100);
+  asm volatile("" : : "r"(made->data()) : "memory");  // else the compiler may do without
+  counting = false;
+  delete made;
+  EXPECT_GE(allocations.load() - before, 2);
+}
+
+}  // namespace
+}  // namespace pelorus
