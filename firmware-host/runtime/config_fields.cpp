@@ -80,6 +80,7 @@ void list(FieldList& f, SurfConfig& c) {
   f.add("threshold", c.threshold, 0, 1e6);
   f.add("upright", c.upright);
   f.add("max_points", c.max_points, 10, 10000);
+  f.add("distinct", c.distinct);
 }
 
 void list(FieldList& f, SurfMatchConfig& c) {
