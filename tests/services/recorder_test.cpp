@@ -113,7 +113,7 @@ TEST_F(RecorderTest, IgnoresPairsUntilStartedAndAfterStop) {
 }
 
 TEST_F(RecorderTest, WritesWhatWaitsWhenItIsDestroyed) {
-  auto recorder = make({.at_start = true, .min_free_gb = 0});
+  auto recorder = make({.at_start = true, .min_free_gb = 0, .queue_pairs = 32});
   ASSERT_TRUE(reaches(*recorder, RecorderState::recording));
   for (int i = 0; i < 20; ++i) offer(*recorder, i);
   const std::string folder = recorder->status().folder;
