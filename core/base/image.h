@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 namespace pelorus {
 
@@ -22,6 +23,15 @@ class Image {
  public:
   Image() = default;
   Image(int width, int height);
+  // The image moved from is empty: one that kept its size would never get pixels again.
+  Image(Image&& other) noexcept { *this = std::move(other); }
+  Image& operator=(Image&& other) noexcept {
+    pixels_ = std::move(other.pixels_);
+    width_ = std::exchange(other.width_, 0);
+    height_ = std::exchange(other.height_, 0);
+    stride_ = std::exchange(other.stride_, 0);
+    return *this;
+  }
 
   // Keeps the storage when the size is unchanged (no allocation after the first frame).
   void resize(int width, int height);
