@@ -14,7 +14,7 @@ template <class T, std::size_t N>
 class FixedVector {
  public:
   using value_type = T;
-  FixedVector() {}  // NOLINT(modernize-use-equals-default): "= default" would zero the elements
+  FixedVector() {}  // NOLINT(modernize-use-equals-default): with "= default", FixedVector{} would zero the elements
   explicit FixedVector(std::size_t size) { resize(size); }
   FixedVector(std::size_t size, const T& value) { assign(size, value); }
 

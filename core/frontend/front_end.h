@@ -78,7 +78,7 @@ class FrontEnd {
   };
 
   // Carries all points into `frame`. predictions[0] must be the world's; unknown points start from it.
-  // The pairs are valid until the next call; pair i belongs to track(i).
+  // The pairs are valid until the next call; pair i belongs to track_of_pair(i).
   [[nodiscard]] PointPairs run(const StereoFrame& frame, std::span<const BodyPrediction> predictions);
   // What the step found: the body of each pair (kNoBody = unexplained) and its measured motion, used to carry the
   // anchors' warps. `motions` holds the step's H_curr_prev of every body named.

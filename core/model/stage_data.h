@@ -93,7 +93,7 @@ struct ObjectState {
   ObjectPhase phase = ObjectPhase::tentative;
   bool motion_measured = false;  // false while coasting: pose and motion are extrapolated
   Rigid3 T_world_obj = Rigid3::Identity();
-  Matrix6d cov_T_world_obj = Matrix6d::Zero();
+  Matrix6d cov_T_world_obj = Matrix6d::Zero();  // given the camera's pose, whose own uncertainty is not in it
   Rigid3 M_world = Rigid3::Identity();
   Matrix6d cov_M_world = Matrix6d::Zero();
   int points = 0;  // that support this frame's motion

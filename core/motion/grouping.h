@@ -34,7 +34,7 @@ class Grouping {
     bool reassignment = true;  // off: points keep the motion that claimed them first (ablation)
   };
 
-  // Groups among `candidates`, largest first. `prior_motions` (predicted ego motion, known bodies) compete as
+  // Groups among `candidates`, best explained first. `prior_motions` (predicted ego motion, known bodies) compete as
   // proposals on equal terms. group_of has one entry per pair (-1 outside the candidates). Valid until next call.
   [[nodiscard]] const Partition& run(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
                                      std::span<const Rigid3> prior_motions, std::uint64_t seed, const Options& options);

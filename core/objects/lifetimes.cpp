@@ -58,6 +58,7 @@ void Registry::weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<
   if (body.phase != ObjectPhase::tentative) return;
   if (static_inside(pairs, roles, body.members) > config_.max_static_inside) {
     body.phase = ObjectPhase::ended;
+    body.measured = false;
     return;
   }
   const bool enough = body.frames_measured >= config_.confirm_frames &&
@@ -119,6 +120,12 @@ void Registry::split_apart(const StereoRig& rig, PointPairs pairs, std::span<Bod
       }
     }
     body.members.resize(kept);
+    // What it gave up is no part of its shape any more, else the hull would claim it back in the next step.
+    std::erase_if(body.model, [&](const ModelPoint& point) {
+      return std::none_of(body.members.begin(), body.members.end(),
+                          [&](PointIndex i) { return pairs[static_cast<std::size_t>(i)].track == point.track; });
+    });
+    body.extent_m.setZero();
     body.frames_apart = 0;
   }
 }
@@ -126,8 +133,11 @@ void Registry::split_apart(const StereoRig& rig, PointPairs pairs, std::span<Bod
 void Registry::merge_alike(PointPairs pairs, std::span<BodyId> owner) {
   for (std::size_t a = 0; a < bodies_.size(); ++a) {
     for (std::size_t b = a + 1; b < bodies_.size(); ++b) {
-      MovingBody& older = bodies_[a];
-      MovingBody& younger = bodies_[b];
+      // The elder stays, but never a tentative one in place of a confirmed one.
+      const bool swapped = bodies_[a].phase == ObjectPhase::tentative && bodies_[b].phase != ObjectPhase::tentative;
+      MovingBody& older = bodies_[swapped ? b : a];
+      MovingBody& younger = bodies_[swapped ? a : b];
+      if (older.phase == ObjectPhase::ended || younger.phase == ObjectPhase::ended) continue;
       const std::array<std::int32_t, 2> ids{older.id.value, younger.id.value};
       auto entry =
           std::find_if(alike_.begin(), alike_.end(), [&](const auto& e) { return e[0] == ids[0] && e[1] == ids[1]; });

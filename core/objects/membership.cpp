@@ -22,7 +22,8 @@ double explained(const StereoRig& rig, PointPairs pairs, std::span<const PointIn
 Membership::Membership(const MembershipConfig& config, const TwoFrameBaConfig& ba, int capacity)
     : config_(config), two_frame_ba_(ba, capacity) {
   candidates_.reserve(static_cast<std::size_t>(capacity));
-  hull_points_.reserve(static_cast<std::size_t>(capacity));
+  hull_points_.reserve(static_cast<std::size_t>(capacity) + kMaxPoints);  // former members and the model
+  proposal_points_.reserve(static_cast<std::size_t>(capacity));
 }
 
 // The hull is taken at the previous position, where the body's pose is known: its image there is the paper's
@@ -73,7 +74,6 @@ StageOutcome Membership::run(const StereoRig& rig, PointPairs pairs, std::span<c
   }
   const MotionFit fit = two_frame_ba_.run(rig, pairs, candidates_, H_start);
   if (fit.outcome == StageOutcome::degenerate || fit.support < config_.min_points) return StageOutcome::no_agreement;
-  body.H_curr_prev = fit.H_curr_prev;
   for (const PointIndex i : candidates_) {
     const auto place = static_cast<std::size_t>(i);
     const double chi2 = transfer_chi2(rig, fit.H_curr_prev, pairs[place]);
@@ -83,7 +83,10 @@ StageOutcome Membership::run(const StereoRig& rig, PointPairs pairs, std::span<c
     body.members.push_back(i);
     owner[place] = body.id;
   }
-  if (static_cast<int>(body.members.size()) >= config_.min_points) return StageOutcome::ok;
+  if (static_cast<int>(body.members.size()) >= config_.min_points) {
+    body.H_curr_prev = fit.H_curr_prev;
+    return StageOutcome::ok;
+  }
   for (const PointIndex i : body.members) owner[static_cast<std::size_t>(i)] = kNoBody;
   body.members.clear();
   return StageOutcome::too_few_points;

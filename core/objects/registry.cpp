@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/check.h"
 #include "core/base/fixed_vector.h"
 #include "core/motion/stereo_transfer.h"
 #include "core/objects/spread.h"
@@ -42,6 +43,7 @@ Registry::Registry(const RegistryConfig& config, const MembershipConfig& members
       merge_(merge),
       reidentification_(reidentification),
       two_frame_ba_(ba, capacity) {
+  PELORUS_CHECK(config.max_model_points <= static_cast<int>(kMaxPoints), "registry.max_model_points is too large");
   bodies_.reserve(kMaxObjects);
   spare_.reserve(kMaxObjects);
   for (int k = 0; k < kMaxObjects; ++k) {
@@ -96,15 +98,30 @@ void Registry::settle(const StereoRig& rig, PointPairs pairs, std::span<const Po
     }
   }
   if (steps.merge) merge_alike(pairs, owner);
+  retire_ended(owner);
+}
+
+void Registry::retire_ended(std::span<BodyId> owner) {
   for (std::size_t b = 0; b < bodies_.size();) {
     if (bodies_[b].phase != ObjectPhase::ended) {
       ++b;
       continue;
     }
     release(bodies_[b], owner);
+    std::erase_if(alike_, [id = bodies_[b].id.value](const auto& e) { return e[0] == id || e[1] == id; });
     spare_.push_back(std::move(bodies_[b]));
     bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(b));
   }
+}
+
+void Registry::lose() {
+  for (MovingBody& body : bodies_) {
+    body.phase = body.phase == ObjectPhase::tentative ? ObjectPhase::ended : ObjectPhase::coasting;
+    body.measured = false;
+    body.members.clear();
+    body.window.clear();
+  }
+  retire_ended({});
 }
 
 void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
@@ -127,6 +144,12 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
     H_curr_prev = T_cam_obj * body.window.T_cam_body_previous().inverse();
     cov_T_cam_obj = body.window.cov_T_cam_body();
     cov_H = body.window.cov_H_curr_prev();
+  }
+  if (cov_H.isZero()) {  // neither the step nor the window could be solved: nothing was measured
+    body.measured = false;
+    body.members.clear();
+    coast(world, body);
+    return;
   }
   const Rigid3 T_world_obj_before = body.T_world_obj;
   body.T_cam_obj = T_cam_obj;

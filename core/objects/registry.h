@@ -77,6 +77,10 @@ class Registry {
               std::span<const double> chi2_static, std::span<const Track* const> track_of_pair, const WorldStep& world,
               const RegistrySteps& steps, std::span<BodyId> owner);
 
+  // The camera lost its own motion: nothing is known of this step. Confirmed bodies coast until they are recognised,
+  // with a new window, since the old one does not know how many steps went by; the others end.
+  void lose();
+
   [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
   // Whether `id` names a body that was confirmed once and has not ended.
   [[nodiscard]] bool is_confirmed(BodyId id) const;
@@ -100,6 +104,7 @@ class Registry {
                   std::span<BodyId> owner);
   void resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
               const WorldStep& world, std::span<BodyId> owner);
+  void retire_ended(std::span<BodyId> owner);
   void merge_alike(PointPairs pairs, std::span<BodyId> owner);
   void release(const MovingBody& body, std::span<BodyId> owner) const;
 

@@ -25,6 +25,11 @@ double distance2(const SurfDescriptor& a, const SurfDescriptor& b) {
   return sum;
 }
 
+// Known once and not found in this step, nor given to another group.
+bool out_of_sight(const MovingBody& body) {
+  return !body.measured && (body.phase == ObjectPhase::confirmed || body.phase == ObjectPhase::coasting);
+}
+
 Eigen::Vector3d centre_of(PointPairs pairs, const Group& group) {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();
   for (const PointIndex i : group.members) centre += pairs[static_cast<std::size_t>(i)].curr.p_cam;
@@ -124,7 +129,7 @@ Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& gro
   const Eigen::Vector3d centre = centre_of(pairs, group);
   for (std::size_t j = 0; j < bodies.size(); ++j) {
     const MovingBody& body = bodies[j];
-    if (body.phase != ObjectPhase::coasting) continue;
+    if (!out_of_sight(body)) continue;
     const double gate_m = config.gate_m + config.growth_mps * seconds(now - body.last_seen) + body.extent_m.norm() / 2;
     if ((T_cam_obj_expected[j] * body.centroid_obj - centre).norm() > gate_m) continue;
     const auto matches = match_model(pairs, group, track_of_pair, body, config);
@@ -146,7 +151,7 @@ Reidentified recognise_motion(const StereoRig& rig, PointPairs pairs, const Grou
   FixedVector<Eigen::Vector3d, kMaxPoints> hull;
   for (std::size_t j = 0; j < bodies.size(); ++j) {
     const MovingBody& body = bodies[j];
-    if (body.phase != ObjectPhase::coasting) continue;
+    if (!out_of_sight(body)) continue;
     const double miss_px = mean_miss_px(rig, pairs, group, body.H_curr_prev);
     if (miss_px > least_px) continue;
     hull.clear();

@@ -192,7 +192,7 @@ void Pipeline::State::publish() {
                                 : VisionState::tracking;
   result.objects_size = 0;
   for (const MovingBody& body : registry.bodies()) {
-    if (result.objects_size == kMaxObjects) break;
+    if (result.objects_size == kMaxObjects || lost) break;  // lost: where they are in the world is not known
     publish_object(body, result.objects[static_cast<std::size_t>(result.objects_size++)]);
   }
   views.clear();

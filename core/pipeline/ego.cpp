@@ -243,6 +243,12 @@ void Pipeline::State::refine_ego_motion() {
   world.cov_H_static = cov_H;
   const Matrix6d Ad = adjoint(T_world_cam);
   cov_T_world_cam += Ad * cov_H * Ad.transpose();
+  if (lost) {
+    // The way gone unseen is not known better than that the vehicle went on as it did.
+    const double lost_s = seconds(world.time - lost_since);
+    cov_T_world_cam.topLeftCorner<3, 3>().diagonal().array() += std::pow(lost_s * lost_twist.head<3>().norm(), 2);
+    cov_T_world_cam.bottomRightCorner<3, 3>().diagonal().array() += std::pow(lost_s * lost_twist.tail<3>().norm(), 2);
+  }
   const Vector6d twist = se3_log(ego.H_curr_prev.inverse()) / world.dt_s;
   twist_cam = twist_known ? Vector6d(twist_cam + 0.7 * (twist - twist_cam)) : twist;
   twist_known = true;
@@ -256,8 +262,19 @@ void Pipeline::State::lose_track() {
     cov_T_world_cam *= config.ego_motion.lost_inflation;
     cov_T_world_cam.diagonal().array() += 1e-6;
   }
+  if (!lost) {
+    lost_since = last_time + Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
+    lost_twist = twist_known ? twist_cam : Vector6d(Vector6d::Zero());
+  }
   lost = true;
   twist_known = false;
+  ego = MotionFit{};
+  world.cov_H_static = Matrix6d::Zero();
+  registry.lose();
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    BodyId& body = front_end.track_of_pair(static_cast<PointIndex>(i)).body;
+    if (body > kWorldBody) body = kNoBody;
+  }
   static_window.clear();
   static_motions.size = 0;
 }

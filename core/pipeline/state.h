@@ -12,7 +12,7 @@ struct Pipeline::State {
 
   void begin(const StereoFrame& frame);
   void match_points(const StereoFrame& frame);  // 5.1: the unified matched set, two clouds
-  void measure_noise();                         // first step only
+  void measure_noise();                         // until the ego motion is found for the first time
   void partition_coarsely();                    // 5.1, 6.1 steps 2-3
   void find_world();                            // 5.2, 6.1 step 4
   void split_static_from_moving();              // 5.2.1, step 5
@@ -71,6 +71,8 @@ struct Pipeline::State {
   Vector6d twist_cam = Vector6d::Zero();  // per second: T_world_cam <- T_world_cam * exp(twist dt)
   bool twist_known = false;
   bool lost = false;
+  Timestamp lost_since;
+  Vector6d lost_twist = Vector6d::Zero();  // just before
   bool noise_known = false;
   StaticMotions static_motions;
   double sigma_px = 0.25;

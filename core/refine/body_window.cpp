@@ -30,6 +30,8 @@ void BodyWindow::clear() {
   free_slots_ = (1u << kMaxWindowFrames) - 1u;
   next_number_ = 0;
   sigma_scale_ = 1.0;
+  cov_T_cam_body_.setZero();
+  cov_H_.setZero();
 }
 
 const BodyPoint* BodyWindow::find(TrackId track) const {

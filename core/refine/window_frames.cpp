@@ -74,7 +74,20 @@ void BodyWindow::add_frame(const StereoRig& rig, Timestamp time, const Rigid3& T
     auto place = std::lower_bound(points_.begin(), points_.end(), observation.track,
                                   [](const BodyPoint& p, TrackId t) { return p.track < t; });
     if (place == points_.end() || place->track != observation.track) {
-      if (points_.size() == points_.capacity()) continue;  // full: newer points wait until older ones have gone
+      if (points_.size() == points_.capacity()) {
+        // Full: the point least observed gives way, if the newest frame does not see it.
+        const std::uint32_t newest = 1u << frame.slot;
+        const auto worth = [&](const BodyPoint& p) {
+          return __builtin_popcount(p.seen) + ((p.seen & newest) != 0u ? kMaxWindowFrames : 0);
+        };
+        const auto least =
+            std::min_element(points_.begin(), points_.end(),
+                             [&](const BodyPoint& a, const BodyPoint& b) { return worth(a) < worth(b); });
+        if ((least->seen & newest) != 0u) continue;
+        const bool before = least < place;
+        points_.erase(least);
+        if (before) --place;
+      }
       BodyPoint point;
       point.z_px.fill(Eigen::Vector3d::Zero());
       point.track = observation.track;

@@ -172,7 +172,7 @@ void list(FieldList& f, std::string_view section, BodyWindowConfig& c) {
   f.add("key_frame_inertia", c.key_frame_inertia, 0, 1000);
   f.add("view_change_rad", c.view_change_rad, 1e-4, 10);
   f.add("max_points", c.max_points, 4, 2000);
-  f.add("iterations", c.iterations, 0, 50);
+  f.add("iterations", c.iterations, 1, 50);
   f.add("robust_chi2", c.robust_chi2, 0.1, kMaxChi2);
   f.add("acceleration_prior", c.acceleration_prior);
   f.add("sigma_acceleration_mps2", c.sigma_acceleration_mps2, 1e-4, 1000);
@@ -243,7 +243,7 @@ void list(FieldList& f, RegistryConfig& c) {
   f.add("min_share_in_parts", c.min_share_in_parts, 0, 1);
   f.add("min_share_of_one", c.min_share_of_one, 0, 1);
   f.add("split_frames", c.split_frames, 1, 1000);
-  f.add("max_model_points", c.max_model_points, 4, 5000);
+  f.add("max_model_points", c.max_model_points, 4, 2000);
 }
 
 }  // namespace

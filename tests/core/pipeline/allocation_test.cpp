@@ -86,6 +86,8 @@ TEST(Allocation, NoneInTwoHundredStepsWithABodyThatComesAndGoes) {
   void* loaded[2];
   (void)backtrace(loaded, 2);
   int with_objects = 0;
+  int lost = 0;
+  std::int32_t newest_id = 0;
   for (int step = 0; step < kWarmUp + kCounted; ++step) {
     // A loss on the way, so that recovery is counted too.
     const bool blind = step == 90 || step == 91;
@@ -96,8 +98,13 @@ TEST(Allocation, NoneInTwoHundredStepsWithABodyThatComesAndGoes) {
     const FrameResult& result = pipeline.step(frame);
     counting = false;
     with_objects += result.objects_size > 0;
+    lost += result.state == VisionState::lost;
+    for (const ObjectState& object : result.objects_view()) newest_id = std::max(newest_id, object.id.value);
+    if (step > 100) EXPECT_TRUE(result.pose_valid);
   }
   EXPECT_GT(with_objects, 50);
+  EXPECT_EQ(lost, 2);
+  EXPECT_GT(newest_id, 1);  // bodies ended and others were born
   EXPECT_EQ(allocations.load(), 0);
 }
 

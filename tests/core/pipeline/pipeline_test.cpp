@@ -110,6 +110,29 @@ TEST(Pipeline, AGreyFrameIsSaidToBeLostAndTheNextGoodOnesGoOn) {
   EXPECT_EQ(result.reset_counter, 1);
 }
 
+TEST(Pipeline, ABodySeenAgainAfterALossHasTheMotionOfOneStep) {
+  Pipeline pipeline({}, kRig);
+  FrameResult result;
+  for (int frame = 0; frame < 10; ++frame) result = step(pipeline, frame, plane_with_board(frame, {}));
+  ASSERT_EQ(result.objects_size, 1);
+  for (int frame = 10; frame < 13; ++frame) {
+    const FrameResult lost = step(pipeline, frame, grey());
+    ASSERT_EQ(lost.state, VisionState::lost);
+    EXPECT_EQ(lost.objects_size, 0);  // where bodies are in the world is not known
+    EXPECT_TRUE(lost.T_curr_prev.matrix().isIdentity());
+  }
+  for (int frame = 13; frame < 24; ++frame) {
+    result = step(pipeline, frame, plane_with_board(frame, {}));
+    for (const ObjectState& object : result.objects_view()) {
+      if (!object.motion_measured || !result.pose_valid) continue;
+      const Eigen::Vector3d p_world = object.centroid_world;
+      EXPECT_LT((object.M_world * p_world - p_world - Eigen::Vector3d(0.008, 0, 0)).norm(), 0.004) << "frame " << frame;
+    }
+  }
+  EXPECT_TRUE(result.pose_valid);
+  EXPECT_EQ(result.objects_size, 1);
+}
+
 TEST(Pipeline, GreyFromTheStartIsNeverAGoodMotion) {
   Pipeline pipeline({}, kRig);
   (void)step(pipeline, 0, grey());
