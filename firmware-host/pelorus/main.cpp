@@ -28,7 +28,11 @@ int run_tool(int argc, char** argv) {
   verbs.push_back(pelorus::add_eval(app));
   verbs.push_back(pelorus::add_ablate(app));
   verbs.push_back(pelorus::add_synth(app));
-  CLI11_PARSE(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? 0 : pelorus::exit_code(pelorus::ErrorCode::bad_usage);
+  }
   for (const pelorus::Verb& verb : verbs) {
     if (!verb.parser->parsed()) continue;
     const pelorus::Result<int> outcome = verb.run();

@@ -98,7 +98,7 @@ Verb add_synth(CLI::App& app) {
       parser->add_option("--seed", options->seed, "Another world of the same kind (default: the scene's)");
   parser->add_option("--threads", options->threads, "Threads to render with (default: all); never changes the result")
       ->check(CLI::Range(1, 256));
-  parser->add_flag("--force", options->force, "Replace an existing folder");
+  parser->add_flag("--force", options->force, "Replace an existing dive of ours");
   parser->footer(
       "Example: pelorus synth paper --out /tmp/dive\n"
       "Truth: mav0/state_groundtruth_estimate0 (left camera), mav0/object<k> (moving bodies).\n"

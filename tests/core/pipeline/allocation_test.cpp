@@ -100,10 +100,10 @@ TEST(Allocation, NoneInTwoHundredStepsWithABodyThatComesAndGoes) {
     with_objects += result.objects_size > 0;
     lost += result.state == VisionState::lost;
     for (const ObjectState& object : result.objects_view()) newest_id = std::max(newest_id, object.id.value);
-    if (step > 100) EXPECT_TRUE(result.pose_valid);
+    EXPECT_TRUE(step <= 100 || result.pose_valid);
   }
   EXPECT_GT(with_objects, 50);
-  EXPECT_EQ(lost, 2);
+  EXPECT_GE(lost, 2);
   EXPECT_GT(newest_id, 1);  // bodies ended and others were born
   EXPECT_EQ(allocations.load(), 0);
 }

@@ -49,6 +49,12 @@ TEST(CommandLine, EveryVerbExplainsItself) {
   }
 }
 
+TEST(CommandLine, WrongUsageEndsWithTheDocumentedCode) {
+  for (const char* arguments : {"", "replay", "replay a --out b --bogus", "bogus"}) {
+    EXPECT_EQ(run_tool(arguments).exit_code, 2) << arguments;
+  }
+}
+
 TEST(CommandLine, MistypedDataSetLeavesNoOutputBehind) {
   const TemporaryFolder folder;
   const Outcome outcome = run_tool("replay /nonexistent/set --out " + (folder.path() / "out").string());

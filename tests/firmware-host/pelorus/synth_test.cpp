@@ -130,15 +130,22 @@ TEST_F(Synth, FramesAndSeedOverrideTheScene) {
   EXPECT_NE(image(out_), image(other));
 }
 
-TEST_F(Synth, RefusesAFolderWithContentUnlessForced) {
+TEST_F(Synth, ReplacesADiveOfItsOwnWhenForcedAndNothingElse) {
   test::write_text(out_ / "precious.txt", "keep");
   const Result<int> refused = run_synth({scene_.string(), "--out", out_.string()});
   ASSERT_FALSE(refused.ok());
   EXPECT_NE(refused.error().message().find("--force"), std::string::npos);
   EXPECT_EQ(test::read_text(out_ / "precious.txt"), "keep");
-  ASSERT_TRUE(run_synth({scene_.string(), "--out", out_.string(), "--force"}).ok());
-  EXPECT_FALSE(fs::exists(out_ / "precious.txt"));
-  EXPECT_TRUE(fs::exists(out_ / "mav0/cam1/data.csv"));
+  const Result<int> forced = run_synth({scene_.string(), "--out", out_.string(), "--force"});
+  ASSERT_FALSE(forced.ok());
+  EXPECT_EQ(forced.error().code, ErrorCode::io);
+  EXPECT_EQ(test::read_text(out_ / "precious.txt"), "keep");
+
+  const fs::path dive = folder_.path() / "dive_before";
+  ASSERT_TRUE(run_synth({scene_.string(), "--out", dive.string()}).ok());
+  EXPECT_FALSE(run_synth({scene_.string(), "--out", dive.string()}).ok());
+  EXPECT_TRUE(run_synth({scene_.string(), "--out", dive.string(), "--force"}).ok());
+  EXPECT_TRUE(fs::exists(dive / "mav0/cam1/data.csv"));
 }
 
 TEST_F(Synth, AnUnwritablePlaceIsAnErrorThatNamesIt) {
