@@ -162,14 +162,10 @@ TEST(ConfigFields, HoldEveryMemberOfEveryStruct) {
 
 TEST(ServiceFields, HoldEveryMemberOfEveryStruct) {
   const std::map<std::string_view, std::size_t> expected{
-      {"source", member_count<SourceConfig>()},
-      {"camera", member_count<CameraConfig>()},
-      {"timing", member_count<TimingConfig>()},
-      {"capture", member_count<CaptureWatchConfig>()},
-      {"lcm", member_count<LcmConfig>()},
-      {"can", member_count<CanConfig>()},
-      {"recorder", member_count<RecorderConfig>()},
-      {"mounting", member_count<MountingConfig>()},
+      {"source", member_count<SourceConfig>()},     {"camera", member_count<CameraConfig>()},
+      {"timing", member_count<TimingConfig>()},     {"capture", member_count<CaptureWatchConfig>()},
+      {"lcm", member_count<LcmConfig>()},           {"can", member_count<CanConfig>()},
+      {"recorder", member_count<RecorderConfig>()}, {"mounting", member_count<MountingConfig>()},
       {"process", member_count<ProcessConfig>()},
   };
   ServiceConfig defaults;
