@@ -261,8 +261,6 @@ void Pipeline::State::lose_track() {
     ++reset_counter;
     cov_T_world_cam *= config.ego_motion.lost_inflation;
     cov_T_world_cam.diagonal().array() += 1e-6;
-  }
-  if (!lost) {
     lost_since = last_time + Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
     lost_twist = twist_known ? twist_cam : Vector6d(Vector6d::Zero());
   }

@@ -199,6 +199,7 @@ struct Recognition {
     for (int number = 1; number <= 2; ++number) {
       bodies.push_back(body_known(view, number));
       bodies.back().phase = ObjectPhase::coasting;
+      bodies.back().measured = false;  // claimed no point in this step
       bodies.back().last_seen = Timestamp{1'000'000'000};
       T_cam_obj_expected.push_back(Rigid3(Eigen::Translation3d(0.1, -0.1, 0)) * bodies.back().T_cam_obj);
     }
@@ -252,9 +253,10 @@ TEST(Reidentification, AlikePatchesInAnotherArrangementAreRefused) {
 
 TEST(Reidentification, ABodyInSightOrExpectedElsewhereIsNotACandidate) {
   Recognition recognition;
-  recognition.bodies[0].phase = ObjectPhase::confirmed;
+  ASSERT_EQ(recognition.run(1).body, 0);
+  recognition.bodies[0].measured = true;
   EXPECT_EQ(recognition.run(1).body, -1);
-  recognition.bodies[0].phase = ObjectPhase::coasting;
+  recognition.bodies[0].measured = false;
   recognition.T_cam_obj_expected[0] = Rigid3(Eigen::Translation3d(3, 0, 0)) * recognition.T_cam_obj_expected[0];
   EXPECT_EQ(recognition.run(1).body, -1);
 }
