@@ -142,6 +142,7 @@ void Registry::resume(const StereoRig& rig, PointPairs pairs, const Group& group
   body.T_cam_obj = group.H_curr_prev.inverse() * found.T_cam_obj;  // at the previous frame
   body.T_world_obj = world.T_world_prev * body.T_cam_obj;
   body.measured = true;
+  body.place_known = true;
   body.window.clear();
   observations_.clear();
   for (const PointIndex i : group.members) {

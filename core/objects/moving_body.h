@@ -41,10 +41,11 @@ struct MovingBody {
   Timestamp first_seen;
   Timestamp last_seen;
   int frames_measured = 0;
-  int frames_missed = 0;  // in a row
-  int frames_apart = 0;   // in a row: its points stand in separate parts
-  double evidence = 0;    // sum of log-likelihood ratios, own motion against static
-  bool measured = false;  // in this step
+  int frames_missed = 0;    // in a row
+  int frames_apart = 0;     // in a row: its points stand in separate parts
+  double evidence = 0;      // sum of log-likelihood ratios, own motion against static
+  bool measured = false;    // in this step
+  bool place_known = true;  // false from a loss of the camera's own motion until the body is recognised
   Rigid3 T_cam_obj = Rigid3::Identity();
   Rigid3 T_world_obj = Rigid3::Identity();
   Matrix6d cov_T_world_obj = Matrix6d::Zero();

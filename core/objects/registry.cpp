@@ -80,8 +80,8 @@ void Registry::claim(const StereoRig& rig, PointPairs pairs, std::span<const Poi
   ++step_;
   for (MovingBody& body : bodies_) {
     const auto seed = world.seed * 1024 + static_cast<std::uint64_t>(body.id.value);
-    body.measured =
-        membership_.run(rig, pairs, roles, chi2_static, steps.hull_membership, seed, body, owner) == StageOutcome::ok;
+    body.measured = body.place_known && membership_.run(rig, pairs, roles, chi2_static, steps.hull_membership, seed,
+                                                        body, owner) == StageOutcome::ok;
   }
 }
 
@@ -118,8 +118,8 @@ void Registry::lose() {
   for (MovingBody& body : bodies_) {
     body.phase = body.phase == ObjectPhase::tentative ? ObjectPhase::ended : ObjectPhase::coasting;
     body.measured = false;
+    body.place_known = false;
     body.members.clear();
-    body.window.clear();
   }
   retire_ended({});
 }

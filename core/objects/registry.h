@@ -77,8 +77,8 @@ class Registry {
               std::span<const double> chi2_static, std::span<const Track* const> track_of_pair, const WorldStep& world,
               const RegistrySteps& steps, std::span<BodyId> owner);
 
-  // The camera lost its own motion: nothing is known of this step. Confirmed bodies coast until they are recognised,
-  // with a new window, since the old one does not know how many steps went by; the others end.
+  // The camera lost its own motion: nothing is known of this step, nor where the bodies are from now on. Confirmed ones
+  // coast until their descriptors are recognised, which tells their place; the others end.
   void lose();
 
   [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }

@@ -131,7 +131,7 @@ Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& gro
     const MovingBody& body = bodies[j];
     if (!out_of_sight(body)) continue;
     const double gate_m = config.gate_m + config.growth_mps * seconds(now - body.last_seen) + body.extent_m.norm() / 2;
-    if ((T_cam_obj_expected[j] * body.centroid_obj - centre).norm() > gate_m) continue;
+    if (body.place_known && (T_cam_obj_expected[j] * body.centroid_obj - centre).norm() > gate_m) continue;
     const auto matches = match_model(pairs, group, track_of_pair, body, config);
     if (static_cast<int>(matches.size()) < config.min_matches) continue;
     int count = 0;
@@ -151,7 +151,7 @@ Reidentified recognise_motion(const StereoRig& rig, PointPairs pairs, const Grou
   FixedVector<Eigen::Vector3d, kMaxPoints> hull;
   for (std::size_t j = 0; j < bodies.size(); ++j) {
     const MovingBody& body = bodies[j];
-    if (!out_of_sight(body)) continue;
+    if (!out_of_sight(body) || !body.place_known) continue;
     const double miss_px = mean_miss_px(rig, pairs, group, body.H_curr_prev);
     if (miss_px > least_px) continue;
     hull.clear();

@@ -28,7 +28,7 @@ struct Reidentified {
   int matches = 0;
 };
 
-// `T_cam_obj_expected[j]`: extrapolated pose of body j in the current camera.
+// `T_cam_obj_expected[j]`: extrapolated pose of body j in the current camera; gates the bodies whose place is known.
 [[nodiscard]] Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& group,
                                       std::span<const Track* const> track_of_pair, std::span<const MovingBody> bodies,
                                       std::span<const Rigid3> T_cam_obj_expected, Timestamp now, std::uint64_t seed,

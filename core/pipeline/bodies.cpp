@@ -93,7 +93,7 @@ void Pipeline::State::start_points() {
 // Where more points are wanted: on the bodies in sight, and where a body out of sight is expected back.
 void Pipeline::State::choose_refill_areas() {
   for (const MovingBody& body : registry.bodies()) {
-    if (!body.measured && body.phase != ObjectPhase::coasting) continue;
+    if (!body.measured && (body.phase != ObjectPhase::coasting || !body.place_known)) continue;
     RefillArea area;
     if (body.measured) {
       collect_members_px(body);
@@ -192,7 +192,7 @@ void Pipeline::State::publish() {
                                 : VisionState::tracking;
   result.objects_size = 0;
   for (const MovingBody& body : registry.bodies()) {
-    if (result.objects_size == kMaxObjects || lost) break;  // lost: where they are in the world is not known
+    if (lost || !body.place_known) continue;  // where it is in the world is not known
     publish_object(body, result.objects[static_cast<std::size_t>(result.objects_size++)]);
   }
   views.clear();

@@ -76,6 +76,10 @@ class Passage {
     view_ = std::move(view);
   }
   void forget_tracks() { body_of_track_.clear(); }
+  void lose() {
+    registry_.lose();
+    forget_tracks();
+  }
   [[nodiscard]] std::span<const MovingBody> bodies() const { return registry_.bodies(); }
   [[nodiscard]] const WorldView& view() const { return view_; }
 
@@ -172,6 +176,44 @@ TEST(Registry, ABodyThatComesBackKeepsItsIdAndItsFrame) {
   for (int frame = 9; frame <= 16; ++frame) T_true = passage.view().M_world[1] * T_true;
   EXPECT_LT((body.T_world_obj.translation() - T_true.translation()).norm(), 0.01);
   EXPECT_LT(rotation_angle_rad(body.T_world_obj.linear() * T_true.linear().transpose()), 0.03);
+}
+
+TEST(Registry, AfterALossBodiesAreWhereTheyAreRecognisedNotWhereTheyWereExpected) {
+  PointWorld world = slow_camera(100);
+  world.add_body(40, {-0.1, 0, 2.0}, 0.25, twist(0.02, 0, 0.01, 0, 0.01, 0));
+  Passage passage(world);
+  for (int frame = 1; frame <= 8; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  ASSERT_EQ(passage.bodies()[0].phase, ObjectPhase::confirmed);
+  Rigid3 T_true = passage.bodies()[0].T_world_obj;
+  // Four steps of which nothing is known: 90 mm of the body's way.
+  for (int frame = 9; frame <= 12; ++frame) passage.lose();
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  EXPECT_EQ(passage.bodies()[0].phase, ObjectPhase::coasting);
+  EXPECT_FALSE(passage.bodies()[0].place_known);
+  for (int frame = 9; frame <= 12; ++frame) T_true = passage.view().M_world[1] * T_true;
+  for (int frame = 13; frame <= 16; ++frame) {
+    passage.step(frame);
+    T_true = passage.view().M_world[1] * T_true;
+    ASSERT_EQ(passage.bodies().size(), 1U);
+    const MovingBody& body = passage.bodies()[0];
+    EXPECT_EQ(body.id, BodyId{1});
+    EXPECT_TRUE(body.measured && body.place_known);
+    const Eigen::Vector3d center = body.T_world_obj * body.centroid_obj;
+    EXPECT_LT((body.M_world * center - passage.view().M_world[1] * center).norm(), 4 * 0.0013) << "frame " << frame;
+    EXPECT_LT((body.T_world_obj.translation() - T_true.translation()).norm(), 0.01) << "frame " << frame;
+  }
+}
+
+TEST(Registry, ALossEndsWhatWasNotYetAnObject) {
+  PointWorld world = slow_camera(100);
+  world.add_body(40, {0, 0, 2.0}, 0.25, twist(0.02, 0, 0, 0, 0, 0));
+  Passage passage(world);
+  passage.step(1);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  ASSERT_EQ(passage.bodies()[0].phase, ObjectPhase::tentative);
+  passage.lose();
+  EXPECT_TRUE(passage.bodies().empty());
 }
 
 TEST(Registry, ABodyOutOfSightForLongEnds) {
