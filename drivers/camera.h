@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <string>
 
+#include "core/base/counter.h"
 #include "core/base/result.h"
 #include "core/base/time.h"
 #include "drivers/camera_frame.h"
@@ -39,6 +40,22 @@ struct CameraStatistics {
   std::uint64_t resent_packets = 0;    // and received then
   std::uint64_t missing_packets = 0;   // never received
   std::uint64_t underruns = 0;         // frames the transport had no buffer for
+};
+
+// The counters that cameras have in common.
+struct CameraCounters {
+  Counter frames, incomplete, skipped, timeouts, lost, opened;
+
+  [[nodiscard]] CameraStatistics read() const {
+    CameraStatistics s;
+    s.frames = frames.value();
+    s.incomplete = incomplete.value();
+    s.skipped = skipped.value();
+    s.timeouts = timeouts.value();
+    s.lost = lost.value();
+    s.opened = opened.value();
+    return s;
+  }
 };
 
 class Camera {

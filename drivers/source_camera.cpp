@@ -22,7 +22,7 @@ Result<> SourceCamera::open() {
   source_ = std::move(opened.value());
   have_ahead_ = false;
   first_of_run_ = true;
-  opened_.add();
+  counters_.opened.add();
   return Ok{};
 }
 
@@ -44,7 +44,7 @@ FrameOutcome SourceCamera::next(CameraFrame& frame, Duration timeout) {
   const Timestamp until = std::min(due_, deadline);
   if (const Duration left = until - clock_.now(); left > Duration::zero()) std::this_thread::sleep_for(left);
   if (due_ > deadline) {
-    timeouts_.add();
+    counters_.timeouts.add();
     return FrameOutcome::timeout;
   }
   deliver(frame);
@@ -55,7 +55,7 @@ FrameOutcome SourceCamera::next(CameraFrame& frame, Duration timeout) {
 std::optional<FrameOutcome> SourceCamera::read_ahead() {
   const Result<bool> read = source_->next(ahead_);
   if (!read) {
-    broken_.add();
+    counters_.incomplete.add();
     return FrameOutcome::dropped;
   }
   if (!read.value()) {
@@ -78,7 +78,7 @@ void SourceCamera::schedule() {
   if (config_.rate_hz > 0) pause = Duration(std::llround(static_cast<double>(step) * 1e9 / config_.rate_hz));
   const bool very_first = seq_ == 0;
   if (first_of_run_ && config_.rate_hz <= 0) pause = very_first ? Duration::zero() : kUnknownPeriod;
-  if (step > 1) skipped_.add(step - 1);
+  if (step > 1) counters_.skipped.add(step - 1);
   seq_ += step;
   seq_in_source_ = ahead_.seq;
   recorded_ = ahead_.capture_time;
@@ -101,18 +101,10 @@ void SourceCamera::deliver(CameraFrame& frame) {
   frame.exposure = Duration::zero();
   frame.time_source = TimeSource::hardware;
   have_ahead_ = false;
-  frames_.add();
+  counters_.frames.add();
 }
 
-CameraStatistics SourceCamera::statistics() const {
-  CameraStatistics s;
-  s.frames = frames_.value();
-  s.incomplete = broken_.value();
-  s.skipped = skipped_.value();
-  s.timeouts = timeouts_.value();
-  s.opened = opened_.value();
-  return s;
-}
+CameraStatistics SourceCamera::statistics() const { return counters_.read(); }
 
 std::string SourceCamera::description() const { return source_->description(); }
 

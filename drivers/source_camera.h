@@ -55,7 +55,8 @@ class SourceCamera final : public Camera {
   Timestamp recorded_;     // stamp of ahead_ in the source
   std::uint64_t seq_ = 0;  // of ahead_, growing over repetitions
   std::uint64_t seq_in_source_ = 0;
-  Counter frames_, broken_, skipped_, timeouts_, opened_, late_;
+  CameraCounters counters_;
+  Counter late_;
 };
 
 }  // namespace pelorus

@@ -9,9 +9,31 @@ HWY_BEFORE_NAMESPACE();
 namespace pelorus::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+template <class V>
+struct Symmetric {
+  V c00, c01, c02, c11, c12, c22;
+};
+
+// e^T C^-1 e by cofactors.
+template <class V>
+HWY_INLINE V solved_square(const Symmetric<V>& c, V eu, V ev, V er) {
+  const V a00 = hn::Sub(hn::Mul(c.c11, c.c22), hn::Mul(c.c12, c.c12));
+  const V a01 = hn::Sub(hn::Mul(c.c02, c.c12), hn::Mul(c.c01, c.c22));
+  const V a02 = hn::Sub(hn::Mul(c.c01, c.c12), hn::Mul(c.c02, c.c11));
+  const V a11 = hn::Sub(hn::Mul(c.c00, c.c22), hn::Mul(c.c02, c.c02));
+  const V a12 = hn::Sub(hn::Mul(c.c01, c.c02), hn::Mul(c.c00, c.c12));
+  const V a22 = hn::Sub(hn::Mul(c.c00, c.c11), hn::Mul(c.c01, c.c01));
+  const V determinant = hn::Add(hn::Add(hn::Mul(c.c00, a00), hn::Mul(c.c01, a01)), hn::Mul(c.c02, a02));
+  const V su = hn::Add(hn::Add(hn::Mul(a00, eu), hn::Mul(a01, ev)), hn::Mul(a02, er));
+  const V sv = hn::Add(hn::Add(hn::Mul(a01, eu), hn::Mul(a11, ev)), hn::Mul(a12, er));
+  const V sr = hn::Add(hn::Add(hn::Mul(a02, eu), hn::Mul(a12, ev)), hn::Mul(a22, er));
+  const V sum = hn::Add(hn::Add(hn::Mul(eu, su), hn::Mul(ev, sv)), hn::Mul(er, sr));
+  return hn::Div(sum, determinant);
+}
+
 // With p the point carried over, J = d project / d p and the columns of d triangulate / d z_a
 //   g_u = q + m e_x, g_v = m e_y, g_r = -q, q = -p_a / disparity, m = z_a / f,
-// the covariance of the residual is sigma^2 C, C = 1 + sum of (J R g)(J R g)^T, solved by cofactors.
+// the covariance of the residual is sigma^2 C, C = 1 + sum of (J R g)(J R g)^T.
 void transfer_chi2(const TransferMotion& motion, const TransferColumns& points, double* chi2) {
   const hn::CappedTag<double, kTransferLanes> d;
   using V = hn::Vec<decltype(d)>;
@@ -74,18 +96,8 @@ void transfer_chi2(const TransferMotion& motion, const TransferColumns& points, 
     const V c01 = entry(ql, qv, ul, uv, vl, vv);
     const V c02 = entry(ql, qr, ul, ur, vl, vr);
     const V c12 = entry(qv, qr, uv, ur, vv, vr);
-    const V a00 = hn::Sub(hn::Mul(c11, c22), hn::Mul(c12, c12));
-    const V a01 = hn::Sub(hn::Mul(c02, c12), hn::Mul(c01, c22));
-    const V a02 = hn::Sub(hn::Mul(c01, c12), hn::Mul(c02, c11));
-    const V a11 = hn::Sub(hn::Mul(c00, c22), hn::Mul(c02, c02));
-    const V a12 = hn::Sub(hn::Mul(c01, c02), hn::Mul(c00, c12));
-    const V a22 = hn::Sub(hn::Mul(c00, c11), hn::Mul(c01, c01));
-    const V determinant = hn::Add(hn::Add(hn::Mul(c00, a00), hn::Mul(c01, a01)), hn::Mul(c02, a02));
-    const V su = hn::Add(hn::Add(hn::Mul(a00, eu), hn::Mul(a01, ev)), hn::Mul(a02, er));
-    const V sv = hn::Add(hn::Add(hn::Mul(a01, eu), hn::Mul(a11, ev)), hn::Mul(a12, er));
-    const V sr = hn::Add(hn::Add(hn::Mul(a02, eu), hn::Mul(a12, ev)), hn::Mul(a22, er));
-    const V sum = hn::Add(hn::Add(hn::Mul(eu, su), hn::Mul(ev, sv)), hn::Mul(er, sr));
-    const V value = hn::Mul(hn::Div(sum, determinant), hn::LoadU(d, points.per_variance + i));
+    const V square = solved_square(Symmetric<V>{c00, c01, c02, c11, c12, c22}, eu, ev, er);
+    const V value = hn::Mul(square, hn::LoadU(d, points.per_variance + i));
     hn::StoreU(hn::IfThenElse(in_front, value, set(kImpossibleChi2)), d, chi2 + i);
   }
 }

@@ -121,7 +121,7 @@ Result<> AravisCamera::open() {
   session_ = std::move(session);
   device_clock_.reset();
   frame_ids_.restart();
-  opened_.add();
+  counters_.opened.add();
   return read_back();
 }
 
@@ -177,14 +177,14 @@ Result<> AravisCamera::start() {
 FrameOutcome AravisCamera::next(CameraFrame& frame, Duration timeout) {
   if (!session_ || !session_->stream) return FrameOutcome::lost;
   if (session_->control_lost) {
-    lost_.add();
+    counters_.lost.add();
     return FrameOutcome::lost;
   }
   ArvStream* stream = session_->stream.get();
   const auto limit_us = std::chrono::duration_cast<std::chrono::microseconds>(timeout).count();
   ArvBuffer* buffer = arv_stream_timeout_pop_buffer(stream, static_cast<guint64>(std::max<std::int64_t>(limit_us, 0)));
   if (buffer == nullptr) {
-    timeouts_.add();
+    counters_.timeouts.add();
     return FrameOutcome::timeout;
   }
   const FrameOutcome outcome = take(buffer, frame);
@@ -200,15 +200,15 @@ FrameOutcome AravisCamera::take(ArvBuffer* buffer, CameraFrame& frame) {
   const guint64 id = arv_buffer_get_frame_id(buffer);
   const std::uint64_t step = id == 0 ? 0 : frame_ids_.advance(id);  // 0: aborted before its first packet
   seq_ += step;
-  if (step > 1) skipped_.add(step - 1);
+  if (step > 1) counters_.skipped.add(step - 1);
   if (!complete || step == 0 || !to_gray(picture_of(buffer, format_), 0, format_.width, frame.view[0])) {
-    incomplete_.add();
+    counters_.incomplete.add();
     return FrameOutcome::dropped;
   }
   frame.seq = seq_;
   frame.views = 1;
   stamp(buffer, frame);
-  frames_.add();
+  counters_.frames.add();
   return FrameOutcome::frame;
 }
 
@@ -252,13 +252,7 @@ void AravisCamera::stop() {
 }
 
 CameraStatistics AravisCamera::statistics() const {
-  CameraStatistics s;
-  s.frames = frames_.value();
-  s.incomplete = incomplete_.value();
-  s.skipped = skipped_.value();
-  s.timeouts = timeouts_.value();
-  s.lost = lost_.value();
-  s.opened = opened_.value();
+  CameraStatistics s = counters_.read();
   s.time_corrections = device_clock_.jumps();
   s.resend_requests = transport_.resend_requests.value();
   s.resent_packets = transport_.resent_packets.value();

@@ -53,7 +53,7 @@ class AravisCamera final : public Camera {
   FrameIdUnwrapper frame_ids_;
   std::uint64_t seq_ = 0;
   Timestamp last_arrival_;
-  Counter frames_, incomplete_, skipped_, timeouts_, lost_, opened_;
+  CameraCounters counters_;
   Transport transport_;  // of this connection and all before it
 };
 

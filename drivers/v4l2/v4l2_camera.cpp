@@ -31,7 +31,7 @@ Result<> V4l2Camera::open() {
                  (config_.side_by_side ? ", two views side by side" : "") + ", " +
                  (f.rate_hz > 0 ? std::to_string(f.rate_hz).substr(0, 5) + " Hz" : "rate unknown") + ", exposure " +
                  (f.exposure_ms > 0 ? std::to_string(f.exposure_ms).substr(0, 5) + " ms" : "unknown");
-  opened_.add();
+  counters_.opened.add();
   return Ok{};
 }
 
@@ -55,7 +55,7 @@ FrameOutcome V4l2Camera::next(CameraFrame& frame, Duration timeout) {
     case V4l2Device::Dequeued::nothing:
       return wait_in_vain();
     case V4l2Device::Dequeued::broken:
-      incomplete_.add();
+      counters_.incomplete.add();
       return FrameOutcome::dropped;
     case V4l2Device::Dequeued::gone:
       break;
@@ -71,7 +71,7 @@ FrameOutcome V4l2Camera::take(v4l2_buffer& buffer, CameraFrame& frame) {
   const FrameTime time = frame_time(buffer, timing_, clock_, arrival);
   if (!device_.give_back(buffer)) return give_up();
   if (!good) {
-    incomplete_.add();
+    counters_.incomplete.add();
     return FrameOutcome::dropped;
   }
   if (time.corrected) time_corrections_.add();
@@ -80,7 +80,7 @@ FrameOutcome V4l2Camera::take(v4l2_buffer& buffer, CameraFrame& frame) {
   frame.arrival = arrival;
   frame.exposure = timing_.exposure;
   frame.time_source = time.source;
-  frames_.add();
+  counters_.frames.add();
   return FrameOutcome::frame;
 }
 
@@ -103,14 +103,14 @@ void V4l2Camera::count_exposures(std::uint32_t sequence) {
   const std::uint32_t since = sequence_known_ ? sequence - sequence_ : 1;
   const std::uint32_t step = since >= 1 && since <= kLongestGap ? since : 1;
   seq_ += step;
-  skipped_.add(step - 1);
+  counters_.skipped.add(step - 1);
   sequence_ = sequence;
   sequence_known_ = true;
 }
 
 // The dequeue watchdog.
 FrameOutcome V4l2Camera::wait_in_vain() {
-  timeouts_.add();
+  counters_.timeouts.add();
   const auto now = std::chrono::steady_clock::now();
   if (now - last_buffer_ < milliseconds(config_.watchdog_s * 1000)) return FrameOutcome::timeout;
   restarts_.add();
@@ -122,19 +122,13 @@ FrameOutcome V4l2Camera::wait_in_vain() {
 }
 
 FrameOutcome V4l2Camera::give_up() {
-  lost_.add();
+  counters_.lost.add();
   device_.close();
   return FrameOutcome::lost;
 }
 
 CameraStatistics V4l2Camera::statistics() const {
-  CameraStatistics s;
-  s.frames = frames_.value();
-  s.incomplete = incomplete_.value();
-  s.skipped = skipped_.value();
-  s.timeouts = timeouts_.value();
-  s.lost = lost_.value();
-  s.opened = opened_.value();
+  CameraStatistics s = counters_.read();
   s.restarts = restarts_.value();
   s.time_corrections = time_corrections_.value();
   return s;

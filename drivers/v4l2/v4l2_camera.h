@@ -45,7 +45,8 @@ class V4l2Camera final : public Camera {
   bool sequence_known_ = false;
   std::uint32_t sequence_ = 0;  // of the last buffer
   std::chrono::steady_clock::time_point last_buffer_;
-  Counter frames_, incomplete_, skipped_, timeouts_, lost_, opened_, restarts_, time_corrections_;
+  CameraCounters counters_;
+  Counter restarts_, time_corrections_;
 };
 
 }  // namespace pelorus

@@ -46,11 +46,8 @@ static bool read_f16(const uint8_t* p, float scale, float* out) {
   const uint32_t exponent = half >> 10;
   const uint32_t mantissa = half & 0x3FFu;
   if (exponent >= 0x1F) return false; /* infinite, no number, or negative */
-  if (exponent == 0) {
-    *out = (float)mantissa * (1.0f / 16777216.0f) * scale;
-  } else {
-    *out = float_of((exponent + 112u) << 23 | mantissa << 13) * scale;
-  }
+  *out = exponent == 0 ? (float)mantissa * (1.0f / 16777216.0f) : float_of((exponent + 112u) << 23 | mantissa << 13);
+  *out *= scale;
   return true;
 }
 

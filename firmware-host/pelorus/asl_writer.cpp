@@ -38,16 +38,15 @@ bool write_png(const fs::path& path, const Image& image) {
 
 std::string camera_folder(int side) { return "mav0/cam" + std::to_string(side); }
 
-// Only what this writer wrote may be replaced: a folder of recordings given by mistake must survive.
-bool is_synthetic_dive(const fs::path& folder) {
-  std::ifstream sensor(folder / "mav0/cam0/sensor.yaml");
+}  // namespace
+
+bool is_synthetic_dive(const fs::path& mav0) {
+  std::ifstream sensor(mav0 / "cam0/sensor.yaml");
   for (std::string line; std::getline(sensor, line);) {
     if (line.find("Pelorus synthetic dive") != std::string::npos) return true;
   }
   return false;
 }
-
-}  // namespace
 
 AslWriter::AslWriter(fs::path folder, bool replace)
     : folder_(std::move(folder)), partial_(folder_.string() + ".partial"), replace_(replace) {}
@@ -60,7 +59,8 @@ Result<AslWriter> AslWriter::open(const fs::path& folder, bool replace, const sy
     return Error{ErrorCode::io, target.string(), "is a file", "name a folder that does not exist yet"};
   if (fs::exists(target, error) && !fs::is_empty(target, error) && !replace)
     return Error{ErrorCode::io, target.string(), "exists and is not empty", "name another folder, or add --force"};
-  if (replace && fs::exists(target, error) && !fs::is_empty(target, error) && !is_synthetic_dive(target))
+  // A folder of recordings given by mistake must survive.
+  if (replace && fs::exists(target, error) && !fs::is_empty(target, error) && !is_synthetic_dive(target / "mav0"))
     return Error{ErrorCode::io, target.string(), "holds something else than a synthetic dive; it is not replaced",
                  "give another folder, or remove it yourself"};
   AslWriter writer(target, replace);

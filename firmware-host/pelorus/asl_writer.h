@@ -14,6 +14,9 @@
 
 namespace pelorus {
 
+// Whether this writer wrote the folder `mav0`: its sensor.yaml says so.
+[[nodiscard]] bool is_synthetic_dive(const std::filesystem::path& mav0);
+
 class AslWriter {
  public:
   // Work goes to `<folder>.partial`. An existing, non-empty folder is an error unless `replace`.

@@ -2,6 +2,7 @@
 #include <fstream>
 #include <map>
 
+#include "firmware-host/pelorus/asl_writer.h"
 #include "firmware-host/pelorus/eval_truth_layouts.h"
 #include "firmware-host/pelorus/progress_bar.h"
 #include "firmware-host/pelorus/result_reader_table.h"
@@ -60,16 +61,6 @@ std::optional<TimedRow> at_time(const std::vector<TimedRow>& rows, Timestamp tim
   return between;
 }
 
-// Our own renderer says so in sensor.yaml: its truth is complete even where no object folder exists.
-bool is_synthetic(const fs::path& mav0) {
-  std::ifstream file(mav0 / "cam0" / "sensor.yaml");
-  std::string line;
-  while (std::getline(file, line)) {
-    if (line.find("Pelorus synthetic dive") != std::string::npos) return true;
-  }
-  return false;
-}
-
 struct BodyBox {
   std::string name;
   std::optional<Eigen::Vector3d> half_size_m;
@@ -123,7 +114,7 @@ Result<std::optional<Truth>> read_euroc_truth(const fs::path& mav0, const Rigid3
   Result<std::vector<TimedRow>> rows = read_timed_rows(file);
   if (!rows) return rows.error();
   Truth truth;
-  truth.exact = is_synthetic(mav0);
+  truth.exact = is_synthetic_dive(mav0);  // complete even where no object folder exists
   truth.knows_bodies = truth.exact;
   truth.origin = truth.exact ? "synthetic, exact" : "EuRoC state estimate (motion capture, millimetres)";
   truth.frames.resize(run.size());

@@ -7,30 +7,19 @@
 #include "core/objects/merge.h"
 #include "core/objects/reidentification.h"
 #include "core/objects/spread.h"
+#include "tests/core/objects/synthetic_descriptor.h"
 #include "tests/support/point_world.h"
 
 namespace pelorus {
 namespace {
 
+using test::descriptor_of;
 using test::kRig;
 using test::PointWorld;
 using test::twist;
 using test::WorldView;
 
 constexpr double kSigma_px = 0.1;
-
-SurfDescriptor descriptor_of(std::uint64_t place) {
-  std::mt19937_64 random(place);
-  std::normal_distribution<float> gauss(0, 1);
-  SurfDescriptor d{};
-  float sum = 0;
-  for (float& x : d) {
-    x = gauss(random);
-    sum += x * x;
-  }
-  for (float& x : d) x /= std::sqrt(sum);
-  return d;
-}
 
 // A body as known after the previous frame of the view: its frame lies at the previous centroid, unturned.
 MovingBody body_known(const WorldView& view, int number) {

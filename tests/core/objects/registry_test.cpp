@@ -3,30 +3,19 @@
 #include <gtest/gtest.h>
 
 #include "core/motion/repartition.h"
+#include "tests/core/objects/synthetic_descriptor.h"
 #include "tests/support/point_world.h"
 
 namespace pelorus {
 namespace {
 
+using test::descriptor_of;
 using test::kRig;
 using test::PointWorld;
 using test::twist;
 using test::WorldView;
 
 constexpr double kSigma_px = 0.1;
-
-SurfDescriptor descriptor_of(std::uint64_t place) {
-  std::mt19937_64 random(place);
-  std::normal_distribution<float> gauss(0, 1);
-  SurfDescriptor d{};
-  float sum = 0;
-  for (float& x : d) {
-    x = gauss(random);
-    sum += x * x;
-  }
-  for (float& x : d) x /= std::sqrt(sum);
-  return d;
-}
 
 // The registry's passage through consecutive steps of a world of points, with the true camera poses.
 class Passage {
