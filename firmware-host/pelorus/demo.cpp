@@ -5,12 +5,12 @@
 #include <memory>
 #include <string>
 
-#include "firmware-host/pelorus/eval_table.h"
+#include "firmware-host/pelorus/eval/eval_table.h"
 #include "firmware-host/pelorus/progress_bar.h"
-#include "firmware-host/pelorus/replay_dive.h"
-#include "firmware-host/pelorus/replay_interrupt.h"
-#include "firmware-host/pelorus/replay_run.h"
-#include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/pelorus/replay/replay_dive.h"
+#include "firmware-host/pelorus/replay/replay_interrupt.h"
+#include "firmware-host/pelorus/replay/replay_run.h"
+#include "firmware-host/pelorus/results/result_files.h"
 #include "firmware-host/runtime/replay_source.h"
 
 namespace pelorus {

@@ -5,14 +5,14 @@
 #include <exception>
 #include <vector>
 
-#include "firmware-host/pelorus/ablate.h"
 #include "firmware-host/pelorus/calib.h"
-#include "firmware-host/pelorus/can.h"
+#include "firmware-host/pelorus/can/can.h"
 #include "firmware-host/pelorus/command.h"
 #include "firmware-host/pelorus/demo.h"
-#include "firmware-host/pelorus/eval.h"
-#include "firmware-host/pelorus/replay.h"
-#include "firmware-host/pelorus/synth.h"
+#include "firmware-host/pelorus/eval/ablate.h"
+#include "firmware-host/pelorus/eval/eval.h"
+#include "firmware-host/pelorus/replay/replay.h"
+#include "firmware-host/pelorus/synth/synth.h"
 
 namespace {
 

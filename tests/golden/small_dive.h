@@ -8,8 +8,8 @@
 
 #include "drivers/synthetic/scene_file.h"
 #include "drivers/synthetic/synthetic_source.h"
-#include "firmware-host/pelorus/replay_run.h"
-#include "firmware-host/pelorus/result_reader.h"
+#include "firmware-host/pelorus/replay/replay_run.h"
+#include "firmware-host/pelorus/results/result_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace pelorus::test {

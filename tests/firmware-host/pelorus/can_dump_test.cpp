@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/can_dump.h"
+#include "firmware-host/pelorus/can/can_dump.h"
 
 #include <gtest/gtest.h>
 

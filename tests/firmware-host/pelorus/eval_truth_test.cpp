@@ -1,10 +1,10 @@
-#include "firmware-host/pelorus/eval_truth.h"
+#include "firmware-host/pelorus/eval/eval_truth.h"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "firmware-host/pelorus/eval_truth_layouts.h"
+#include "firmware-host/pelorus/eval/eval_truth_layouts.h"
 #include "tests/support/temporary_folder.h"
 
 namespace pelorus {

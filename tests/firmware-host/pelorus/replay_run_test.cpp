@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/replay_run.h"
+#include "firmware-host/pelorus/replay/replay_run.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "firmware-host/pelorus/result_reader.h"
+#include "firmware-host/pelorus/results/result_reader.h"
 
 #include <gtest/gtest.h>
 
-#include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/pelorus/results/result_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace pelorus {

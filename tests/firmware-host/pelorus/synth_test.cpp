@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/synth.h"
+#include "firmware-host/pelorus/synth/synth.h"
 
 #include <gtest/gtest.h>
 

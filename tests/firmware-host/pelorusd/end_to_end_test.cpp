@@ -9,9 +9,9 @@
 #include <pelorus/vis_tracks_t.hpp>
 
 #include "drivers/replay/dataset.h"
-#include "firmware-host/pelorus/replay_run.h"
-#include "firmware-host/pelorus/result_files.h"
-#include "firmware-host/pelorus/result_reader.h"
+#include "firmware-host/pelorus/replay/replay_run.h"
+#include "firmware-host/pelorus/results/result_files.h"
+#include "firmware-host/pelorus/results/result_reader.h"
 #include "tests/firmware-host/pelorusd/running_service.h"
 
 namespace pelorus {

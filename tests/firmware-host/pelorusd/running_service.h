@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/synthetic/scene_file.h"
-#include "firmware-host/pelorus/replay_dive.h"
+#include "firmware-host/pelorus/replay/replay_dive.h"
 #include "tests/services/lcm_loopback.h"
 #include "tests/support/child_process.h"
 #include "tests/support/temporary_folder.h"

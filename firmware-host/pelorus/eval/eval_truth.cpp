@@ -1,11 +1,11 @@
-#include "firmware-host/pelorus/eval_truth.h"
+#include "firmware-host/pelorus/eval/eval_truth.h"
 
 #include <filesystem>
 
 #include "core/geometry/rectifier.h"
 #include "drivers/replay/euroc.h"
 #include "drivers/replay/kitti.h"
-#include "firmware-host/pelorus/eval_truth_layouts.h"
+#include "firmware-host/pelorus/eval/eval_truth_layouts.h"
 #include "firmware-host/runtime/replay_source.h"
 
 namespace pelorus {

@@ -1,11 +1,11 @@
-#include "firmware-host/pelorus/can.h"
+#include "firmware-host/pelorus/can/can.h"
 
 #include <cstdio>
 #include <memory>
 #include <string>
 
-#include "firmware-host/pelorus/can_dump.h"
-#include "firmware-host/pelorus/can_export.h"
+#include "firmware-host/pelorus/can/can_dump.h"
+#include "firmware-host/pelorus/can/can_export.h"
 #include "services/can/contract_text.h"
 
 namespace pelorus {

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "firmware-host/pelorus/eval_run.h"
+#include "firmware-host/pelorus/eval/eval_run.h"
 
 namespace pelorus {
 

@@ -8,7 +8,7 @@
 
 #include "core/base/result.h"
 #include "core/evaluation/evaluation.h"
-#include "firmware-host/pelorus/result_reader.h"
+#include "firmware-host/pelorus/results/result_reader.h"
 
 namespace pelorus {
 

@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/asl_writer.h"
+#include "firmware-host/pelorus/synth/asl_writer.h"
 
 #include <Eigen/Geometry>
 #include <cstdio>

@@ -1,10 +1,10 @@
-#include "firmware-host/pelorus/replay_dive.h"
+#include "firmware-host/pelorus/replay/replay_dive.h"
 
 #include "drivers/synthetic/scene_file.h"
 #include "drivers/synthetic/synthetic_source.h"
-#include "firmware-host/pelorus/asl_writer.h"
 #include "firmware-host/pelorus/progress_bar.h"
-#include "firmware-host/pelorus/replay_interrupt.h"
+#include "firmware-host/pelorus/replay/replay_interrupt.h"
+#include "firmware-host/pelorus/synth/asl_writer.h"
 #include "firmware-host/runtime/scene_lookup.h"
 
 namespace pelorus {

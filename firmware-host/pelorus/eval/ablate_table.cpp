@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/ablate_table.h"
+#include "firmware-host/pelorus/eval/ablate_table.h"
 
 #include <array>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "firmware-host/pelorus/eval_json.h"
+#include "firmware-host/pelorus/eval/eval_json.h"
 
 namespace pelorus {
 namespace {

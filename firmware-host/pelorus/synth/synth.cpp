@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/synth.h"
+#include "firmware-host/pelorus/synth/synth.h"
 
 #include <cstdio>
 #include <memory>
@@ -7,8 +7,8 @@
 
 #include "drivers/synthetic/scene_file.h"
 #include "drivers/synthetic/synthetic_source.h"
-#include "firmware-host/pelorus/asl_writer.h"
 #include "firmware-host/pelorus/progress_bar.h"
+#include "firmware-host/pelorus/synth/asl_writer.h"
 #include "firmware-host/runtime/scene_lookup.h"
 
 namespace pelorus {

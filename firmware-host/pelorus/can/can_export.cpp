@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/can_export.h"
+#include "firmware-host/pelorus/can/can_export.h"
 
 #include <fstream>
 #include <iterator>

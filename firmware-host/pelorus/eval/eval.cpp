@@ -1,12 +1,12 @@
-#include "firmware-host/pelorus/eval.h"
+#include "firmware-host/pelorus/eval/eval.h"
 
 #include <cstdio>
 #include <memory>
 #include <string>
 
-#include "firmware-host/pelorus/eval_json.h"
-#include "firmware-host/pelorus/eval_run.h"
-#include "firmware-host/pelorus/eval_table.h"
+#include "firmware-host/pelorus/eval/eval_json.h"
+#include "firmware-host/pelorus/eval/eval_run.h"
+#include "firmware-host/pelorus/eval/eval_table.h"
 
 namespace pelorus {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "drivers/can/bus_health.h"
 #include "drivers/can/candump_log.h"
-#include "firmware-host/pelorus/can_dump.h"
+#include "firmware-host/pelorus/can/can_dump.h"
 #include "services/can/contract_text.h"
 
 namespace pelorus {

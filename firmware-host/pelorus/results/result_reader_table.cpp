@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/result_reader_table.h"
+#include "firmware-host/pelorus/results/result_reader_table.h"
 
 #include <algorithm>
 #include <charconv>

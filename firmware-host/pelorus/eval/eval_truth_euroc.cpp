@@ -2,10 +2,10 @@
 #include <fstream>
 #include <map>
 
-#include "firmware-host/pelorus/asl_writer.h"
-#include "firmware-host/pelorus/eval_truth_layouts.h"
+#include "firmware-host/pelorus/eval/eval_truth_layouts.h"
 #include "firmware-host/pelorus/progress_bar.h"
-#include "firmware-host/pelorus/result_reader_table.h"
+#include "firmware-host/pelorus/results/result_reader_table.h"
+#include "firmware-host/pelorus/synth/asl_writer.h"
 
 namespace pelorus {
 namespace {

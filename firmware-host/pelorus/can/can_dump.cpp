@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/can_dump.h"
+#include "firmware-host/pelorus/can/can_dump.h"
 
 #include <poll.h>
 
@@ -12,7 +12,7 @@
 
 #include "drivers/can/can_socket.h"
 #include "drivers/can/candump_log.h"
-#include "firmware-host/pelorus/replay_interrupt.h"
+#include "firmware-host/pelorus/replay/replay_interrupt.h"
 
 namespace pelorus {
 namespace {

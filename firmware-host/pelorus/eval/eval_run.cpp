@@ -1,6 +1,6 @@
-#include "firmware-host/pelorus/eval_run.h"
+#include "firmware-host/pelorus/eval/eval_run.h"
 
-#include "firmware-host/pelorus/eval_truth.h"
+#include "firmware-host/pelorus/eval/eval_truth.h"
 
 namespace pelorus {
 

@@ -1,11 +1,11 @@
-#include "firmware-host/pelorus/result_reader.h"
+#include "firmware-host/pelorus/results/result_reader.h"
 
 #include <algorithm>
 #include <array>
 #include <map>
 
-#include "firmware-host/pelorus/result_files.h"
-#include "firmware-host/pelorus/result_reader_table.h"
+#include "firmware-host/pelorus/results/result_files.h"
+#include "firmware-host/pelorus/results/result_reader_table.h"
 
 namespace pelorus {
 namespace {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware-host/pelorus/eval_run.h"
+#include "firmware-host/pelorus/eval/eval_run.h"
 
 namespace pelorus {
 

@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/replay_interrupt.h"
+#include "firmware-host/pelorus/replay/replay_interrupt.h"
 
 namespace pelorus {
 namespace {

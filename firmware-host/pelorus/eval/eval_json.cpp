@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/eval_json.h"
+#include "firmware-host/pelorus/eval/eval_json.h"
 
 #include <array>
 #include <cmath>

@@ -3,8 +3,8 @@
 #include <map>
 
 #include "drivers/replay/kitti.h"
-#include "firmware-host/pelorus/eval_truth_layouts.h"
-#include "firmware-host/pelorus/result_reader_table.h"
+#include "firmware-host/pelorus/eval/eval_truth_layouts.h"
+#include "firmware-host/pelorus/results/result_reader_table.h"
 
 namespace pelorus {
 namespace {

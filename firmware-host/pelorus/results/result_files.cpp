@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/pelorus/results/result_files.h"
 
 #include <cerrno>
 #include <cinttypes>

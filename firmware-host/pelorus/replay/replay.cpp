@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/replay.h"
+#include "firmware-host/pelorus/replay/replay.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "firmware-host/pelorus/progress_bar.h"
-#include "firmware-host/pelorus/replay_interrupt.h"
-#include "firmware-host/pelorus/replay_run.h"
-#include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/pelorus/replay/replay_interrupt.h"
+#include "firmware-host/pelorus/replay/replay_run.h"
+#include "firmware-host/pelorus/results/result_files.h"
 #include "firmware-host/runtime/config_loader.h"
 #include "firmware-host/runtime/replay_source.h"
 

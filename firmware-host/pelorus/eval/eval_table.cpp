@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/eval_table.h"
+#include "firmware-host/pelorus/eval/eval_table.h"
 
 #include <array>
 #include <cmath>

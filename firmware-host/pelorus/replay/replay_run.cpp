@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/replay_run.h"
+#include "firmware-host/pelorus/replay/replay_run.h"
 
 #include <algorithm>
 #include <chrono>
@@ -9,7 +9,7 @@
 
 #include "core/geometry/rectifier.h"
 #include "core/pipeline/pipeline.h"
-#include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/pelorus/results/result_files.h"
 #include "services/overlay.h"
 
 namespace pelorus {

@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/ablate.h"
+#include "firmware-host/pelorus/eval/ablate.h"
 
 #include <stdlib.h>
 
@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "firmware-host/pelorus/ablate_table.h"
+#include "firmware-host/pelorus/eval/ablate_table.h"
 #include "firmware-host/pelorus/progress_bar.h"
-#include "firmware-host/pelorus/replay_dive.h"
-#include "firmware-host/pelorus/replay_interrupt.h"
-#include "firmware-host/pelorus/replay_run.h"
-#include "firmware-host/pelorus/result_files.h"
+#include "firmware-host/pelorus/replay/replay_dive.h"
+#include "firmware-host/pelorus/replay/replay_interrupt.h"
+#include "firmware-host/pelorus/replay/replay_run.h"
+#include "firmware-host/pelorus/results/result_files.h"
 #include "firmware-host/runtime/config_fields.h"
 #include "firmware-host/runtime/config_loader.h"
 #include "firmware-host/runtime/replay_source.h"
