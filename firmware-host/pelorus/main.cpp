@@ -9,6 +9,7 @@
 #include "firmware-host/pelorus/can/can.h"
 #include "firmware-host/pelorus/command.h"
 #include "firmware-host/pelorus/demo.h"
+#include "firmware-host/pelorus/doctor/doctor.h"
 #include "firmware-host/pelorus/eval/ablate.h"
 #include "firmware-host/pelorus/eval/eval.h"
 #include "firmware-host/pelorus/replay/replay.h"
@@ -24,6 +25,7 @@ int run_tool(int argc, char** argv) {
   verbs.push_back(pelorus::add_calib(app));
   verbs.push_back(pelorus::add_can(app));
   verbs.push_back(pelorus::add_demo(app));
+  verbs.push_back(pelorus::add_doctor(app));
   verbs.push_back(pelorus::add_replay(app));
   verbs.push_back(pelorus::add_eval(app));
   verbs.push_back(pelorus::add_ablate(app));

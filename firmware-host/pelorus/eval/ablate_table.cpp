@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "firmware-host/pelorus/eval/eval_json.h"
+#include "firmware-host/pelorus/json_object.h"
 
 namespace pelorus {
 namespace {

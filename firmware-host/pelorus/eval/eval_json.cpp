@@ -1,29 +1,13 @@
 #include "firmware-host/pelorus/eval/eval_json.h"
 
-#include <array>
-#include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "firmware-host/pelorus/json_object.h"
 
 namespace pelorus {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-
-std::string quoted(const std::string& text) {
-  std::string json = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') json += '\\';
-    if (static_cast<unsigned char>(c) < 0x20) {
-      std::array<char, 8> escape{};
-      std::snprintf(escape.data(), escape.size(), "\\u%04x", static_cast<unsigned>(c));
-      json += escape.data();
-    } else {
-      json += c;
-    }
-  }
-  return json + "\"";
-}
 
 std::string statistics_json(const ErrorStatistics& statistics) {
   if (statistics.count == 0) return "null";
@@ -115,34 +99,6 @@ std::string objects_json(const Evaluation& evaluation) {
 }
 
 }  // namespace
-
-JsonObject& JsonObject::raw(const std::string& key, const std::string& json) {
-  if (!members_.empty()) members_ += ",";
-  members_ += quoted(key);
-  members_ += ":";
-  members_ += json;
-  return *this;
-}
-
-JsonObject& JsonObject::number(const std::string& key, double value) {
-  if (!std::isfinite(value)) return raw(key, "null");
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), "%.9g", value);
-  return raw(key, text.data());
-}
-
-JsonObject& JsonObject::integer(const std::string& key, long long value) { return raw(key, std::to_string(value)); }
-JsonObject& JsonObject::flag(const std::string& key, bool value) { return raw(key, value ? "true" : "false"); }
-JsonObject& JsonObject::text(const std::string& key, const std::string& value) { return raw(key, quoted(value)); }
-
-std::string json_array(const std::vector<std::string>& elements) {
-  std::string json = "[";
-  for (const std::string& element : elements) {
-    if (json.size() > 1) json += ",";
-    json += element;
-  }
-  return json + "]";
-}
 
 std::string to_json(const RunEvaluation& run) {
   const RunFacts& facts = run.evaluation.facts;

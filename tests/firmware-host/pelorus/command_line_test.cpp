@@ -42,7 +42,7 @@ std::string small_scene(const TemporaryFolder& folder, int frames) {
 }
 
 TEST(CommandLine, EveryVerbExplainsItself) {
-  for (const char* verb : {"replay", "eval", "ablate", "demo", "can dump", "can dbc", "can export"}) {
+  for (const char* verb : {"replay", "eval", "ablate", "demo", "can dump", "can dbc", "can export", "doctor"}) {
     const Outcome outcome = run_tool(std::string(verb) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_NE(outcome.text.find("Exit codes"), std::string::npos) << verb;
@@ -129,6 +129,23 @@ TEST(CommandLine, AblatePrintsARowPerRun) {
   EXPECT_NE(outcome.text.find("\"step_off\":null"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("\"step_off\":\"net_filter\""), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("\"step_off\":\"ray_filter\""), std::string::npos) << outcome.text;
+}
+
+TEST(CommandLine, DoctorFailsWhenTheConfiguredSourceIsNotThereAndOnlyThen) {
+  const TemporaryFolder folder;
+  const std::string config = (folder.path() / "dive.yaml").string();
+  write_text(config, "source: {kind: synthetic, path: " PELORUS_SOURCE_DIR
+                     "/config/scenes/paper.yaml}\nlcm: {enabled: false}\n"
+                     "timing: {deadline_tolerance_ms: 1000}\n");  // of a machine shared with other tests
+  const Outcome good = run_tool("doctor --config " + config);
+  EXPECT_EQ(good.exit_code, 0) << good.text;
+  EXPECT_NE(good.text.find("wake-ups"), std::string::npos) << good.text;
+  write_text(config, "source: {path: /nonexistent/dive}\nlcm: {enabled: false}\n");
+  const Outcome bad = run_tool("doctor --json --config " + config);
+  EXPECT_EQ(bad.exit_code, 1) << bad.text;
+  EXPECT_NE(bad.text.find("\"topic\":\"source replay\",\"verdict\":\"FAIL\""), std::string::npos) << bad.text;
+  write_text(config, "source: {pathh: x}\n");
+  EXPECT_EQ(run_tool("doctor --config " + config).exit_code, 5);
 }
 
 TEST(CommandLine, DemoDoesNotTouchAForeignFolder) {
