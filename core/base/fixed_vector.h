@@ -13,7 +13,7 @@ namespace pelorus {
 template <class T, std::size_t N>
 class FixedVector {
  public:
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the name of the standard containers
   FixedVector() {}  // NOLINT(modernize-use-equals-default): with "= default", FixedVector{} would zero the elements
   explicit FixedVector(std::size_t size) { resize(size); }
   FixedVector(std::size_t size, const T& value) { assign(size, value); }

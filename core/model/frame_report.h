@@ -45,6 +45,7 @@ struct FrameReport {
   std::int32_t points_static = 0;
   std::int32_t points_moving = 0;
   std::int32_t points_outlier = 0;
+  std::int32_t births_refused = 0;  // bodies found while the table of kMaxObjects was full
   std::int32_t groups = 0;
   std::int32_t frames_missed = 0;  // gap in seq before this frame, bridged
   double sigma_px = 0;             // learned pixel deviation

@@ -100,7 +100,29 @@ void Registry::adopt_group(const StereoRig& rig, PointPairs pairs, std::span<con
   }
   if (spread_px(pairs, group.members) < config_.min_spread_px) return;
   if (static_inside(pairs, roles, group.members) > config_.max_static_inside) return;
-  if (static_cast<int>(bodies_.size()) < kMaxObjects) give_birth(rig, pairs, group, world, owner);
+  if (bodies_.size() < kMaxObjects) {
+    give_birth(rig, pairs, group, world, owner);
+  } else {
+    make_room();
+  }
+}
+
+// The table is full: of the tentative bodies that are not seen, or had twice what confirmation takes, the least
+// believed ends, so that its place is free in the next step.
+void Registry::make_room() {
+  ++births_refused_;
+  MovingBody* least = nullptr;
+  for (MovingBody& body : bodies_) {
+    const auto frames = static_cast<std::ptrdiff_t>(body.frames_measured);
+    const bool had_its_chance =
+        !body.measured || (frames >= std::ptrdiff_t{2} * config_.confirm_frames &&
+                           frames * std::ssize(body.members) >= std::ptrdiff_t{2} * config_.confirm_point_frames);
+    if (body.phase != ObjectPhase::tentative || !had_its_chance) continue;
+    if (least == nullptr || body.evidence < least->evidence) least = &body;
+  }
+  if (least == nullptr) return;
+  least->phase = ObjectPhase::ended;
+  least->measured = false;
 }
 
 // Paper section 4: the frame of the object is fixed at its birth b; here with axes parallel to the world's.

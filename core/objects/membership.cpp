@@ -38,7 +38,8 @@ void Membership::collect_candidates(const StereoRig& rig, PointPairs pairs, std:
     hull_points_.push_back(pairs[i].prev.p_cam);
   }
   former_ = candidates_.size();
-  if (!by_hull || hull_points_.size() < 3) return;
+  // Out of sight for longer it comes back by recognition, which tells its pose.
+  if (!by_hull || body.frames_missed > config_.hull_missed_frames) return;
   for (const ModelPoint& point : body.model) hull_points_.push_back(body.T_cam_obj * point.p_obj);
   const Eigen::Vector3d center = body.T_cam_obj * body.centroid_obj;
   const double margin_m = config_.hull_margin_share * body.extent_m.norm();

@@ -14,6 +14,7 @@ struct MembershipConfig {
   MotionProposalConfig proposal{.samples = 24, .gate_chi2 = 16.266, .scored_points = 60};
   double gate_chi2 = 16.266;        // 99.9 % of 3 degrees of freedom
   double hull_margin_share = 0.15;  // of the body's extent: the hull of few points is smaller than the body
+  int hull_missed_frames = 15;      // the hull is where the body was expected for so many frames without a point of it
   int min_points = 4;
 };
 

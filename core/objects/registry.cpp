@@ -54,7 +54,7 @@ Registry::Registry(const RegistryConfig& config, const MembershipConfig& members
   T_cam_obj_expected_.reserve(kMaxObjects);
   part_.reserve(static_cast<std::size_t>(capacity));
   part_group_.members.reserve(static_cast<std::size_t>(capacity));
-  alike_.reserve(kMaxObjects * kMaxObjects);
+  alike_.reserve(std::size_t{kMaxObjects} * kMaxObjects);
   observations_.reserve(static_cast<std::size_t>(capacity));
 }
 
@@ -78,6 +78,7 @@ void Registry::claim(const StereoRig& rig, PointPairs pairs, std::span<const Poi
                      std::span<const double> chi2_static, const WorldStep& world, const RegistrySteps& steps,
                      std::span<BodyId> owner) {
   ++step_;
+  births_refused_ = 0;
   for (MovingBody& body : bodies_) {
     const auto seed = world.seed * 1024 + static_cast<std::uint64_t>(body.id.value);
     body.measured = body.place_known && membership_.run(rig, pairs, roles, chi2_static, steps.hull_membership, seed,

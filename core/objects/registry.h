@@ -82,6 +82,8 @@ class Registry {
   void lose();
 
   [[nodiscard]] std::span<const MovingBody> bodies() const { return bodies_; }
+  // Groups of the last step that were bodies by all tests, and found the table full.
+  [[nodiscard]] int births_refused() const { return births_refused_; }
   // Whether `id` names a body that was confirmed once and has not ended.
   [[nodiscard]] bool is_confirmed(BodyId id) const;
 
@@ -104,6 +106,7 @@ class Registry {
                   std::span<BodyId> owner);
   void resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
               const WorldStep& world, std::span<BodyId> owner);
+  void make_room();
   void retire_ended(std::span<BodyId> owner);
   void merge_alike(PointPairs pairs, std::span<BodyId> owner);
   void release(const MovingBody& body, std::span<BodyId> owner) const;
@@ -123,6 +126,7 @@ class Registry {
   std::vector<std::array<std::int32_t, 3>> alike_;  // ids of two bodies and the frames they moved alike in a row
   std::int32_t next_id_ = 1;
   std::int64_t step_ = 0;
+  int births_refused_ = 0;
 };
 
 }  // namespace pelorus

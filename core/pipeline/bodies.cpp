@@ -67,6 +67,7 @@ void Pipeline::State::settle_bodies() {
                             on.reidentification};
   registry.settle(rig, pairs, roles, chi2_static, track_of_pair, world, steps, owner);
   result.report[Stage::objects].outcome = StageOutcome::ok;
+  result.report.births_refused = registry.births_refused();
 }
 
 void Pipeline::State::start_points() {

@@ -186,6 +186,7 @@ void list(FieldList& f, MembershipConfig& c) {
   f.add("proposal_scored_points", c.proposal.scored_points, 3, 2000);
   f.add("gate_chi2", c.gate_chi2, 0.1, kMaxChi2);
   f.add("hull_margin_share", c.hull_margin_share, 0, 10);
+  f.add("hull_missed_frames", c.hull_missed_frames, 0, 1000);
   f.add("min_points", c.min_points, 3, 1000);
 }
 

@@ -76,7 +76,8 @@ std::string frames_header() {
   std::string header = "seq,timestamp_ns,state,pose_valid";
   for (std::size_t i = 0; i < kStageCount; ++i) header += std::string(",") + to_text(static_cast<Stage>(i));
   header +=
-      ",points_tracked,points_started,points_static,points_moving,points_outlier,groups,objects,frames_missed,"
+      ",points_tracked,points_started,points_static,points_moving,points_outlier,groups,objects,frames_missed,births_"
+      "refused,"
       "sigma_px,world_confidence,reset_counter,pose_sigma_t_m,pose_sigma_r_rad,"
       "step_x,step_y,step_z,stepq_w,stepq_x,stepq_y,stepq_z";
   return header + covariance_header("step_cov_");
@@ -169,8 +170,9 @@ void ResultWriter::write_frame(const FrameResult& result) {
                result.pose_valid ? 1 : 0);
   const FrameReport& report = result.report;
   for (const StageReport& stage : report.stages) std::fprintf(file, ",%s", to_text(stage.outcome));
-  std::fprintf(file, ",%d,%d,%d,%d,%d,%d,%d,%d", report.points_tracked, report.points_started, report.points_static,
-               report.points_moving, report.points_outlier, report.groups, result.objects_size, report.frames_missed);
+  std::fprintf(file, ",%d,%d,%d,%d,%d,%d,%d,%d,%d", report.points_tracked, report.points_started, report.points_static,
+               report.points_moving, report.points_outlier, report.groups, result.objects_size, report.frames_missed,
+               report.births_refused);
   put(file, report.sigma_px);
   put(file, result.world_confidence);
   std::fprintf(file, ",%d", result.reset_counter);

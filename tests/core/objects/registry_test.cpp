@@ -69,6 +69,7 @@ class Passage {
     registry_.lose();
     forget_tracks();
   }
+  [[nodiscard]] const Registry& registry() const { return registry_; }
   [[nodiscard]] std::span<const MovingBody> bodies() const { return registry_.bodies(); }
   [[nodiscard]] const WorldView& view() const { return view_; }
 
@@ -203,6 +204,52 @@ TEST(Registry, ALossEndsWhatWasNotYetAnObject) {
   ASSERT_EQ(passage.bodies()[0].phase, ObjectPhase::tentative);
   passage.lose();
   EXPECT_TRUE(passage.bodies().empty());
+}
+
+TEST(Registry, ATentativeBodyMayMissAFrame) {
+  PointWorld world = slow_camera(100);
+  world.add_body(40, {0, 0, 2.0}, 0.25, twist(0.02, 0, 0, 0, 0, 0));
+  Passage passage(world);
+  passage.step(1);
+  passage.step(2, false);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  EXPECT_EQ(passage.bodies()[0].phase, ObjectPhase::tentative);
+  passage.forget_tracks();
+  for (int frame = 3; frame <= 5; ++frame) {
+    passage.step(frame);
+    ASSERT_EQ(passage.bodies().size(), 1U);
+    EXPECT_EQ(passage.bodies()[0].id, BodyId{1});
+    EXPECT_EQ(passage.bodies()[0].frames_measured, frame - 1);
+  }
+  EXPECT_EQ(passage.bodies()[0].phase, ObjectPhase::confirmed);
+}
+
+TEST(Registry, AFullTableSaysWhatItRefusesAndMakesRoomAmongTheTentative) {
+  PointWorld world = slow_camera(60);
+  for (int k = 0; k < kMaxObjects + 2; ++k) {
+    const Eigen::Vector3d place(-0.9 + 0.3 * (k % 6) + 0.15, -0.45 + 0.45 * (k / 6), 2.5);
+    world.add_body(12, place, 0.08, twist(0.01 * ((k % 3) - 1), 0.02, 0.004 * (k % 4), 0, 0, 0));
+  }
+  Passage passage(world);
+  for (int frame = 1; frame <= 12; ++frame) {
+    passage.step(frame);
+    ASSERT_EQ(passage.bodies().size(), static_cast<std::size_t>(kMaxObjects)) << "frame " << frame;
+    EXPECT_EQ(passage.registry().births_refused(), 2) << "frame " << frame;
+  }
+  for (const MovingBody& body : passage.bodies()) EXPECT_EQ(body.phase, ObjectPhase::confirmed) << body.id.value;
+  // One that is called moving and never does gives way, as the confirmed never do.
+  PointWorld restless = slow_camera(60);
+  for (int k = 0; k < kMaxObjects + 1; ++k) {
+    restless.add_body(12, {-0.75 + 0.3 * (k % 6), -0.45 + 0.45 * (k / 6), 2.5}, 0.08,
+                      k == 0 ? twist(0, 0, 0, 0, 0, 0) : twist(0.01 * ((k % 3) - 1), 0.02, 0.004 * (k % 4), 0, 0, 0));
+  }
+  Passage with_rest(restless);
+  for (int frame = 1; frame <= 12; ++frame) with_rest.step(frame, true, 1);
+  for (const MovingBody& body : with_rest.bodies()) EXPECT_NE(body.id, BodyId{1});
+  for (int frame = 13; frame <= 20; ++frame) with_rest.step(frame);
+  ASSERT_EQ(with_rest.bodies().size(), static_cast<std::size_t>(kMaxObjects));
+  EXPECT_EQ(with_rest.registry().births_refused(), 0);
+  for (const MovingBody& body : with_rest.bodies()) EXPECT_EQ(body.phase, ObjectPhase::confirmed) << body.id.value;
 }
 
 TEST(Registry, ABodyOutOfSightForLongEnds) {

@@ -32,7 +32,17 @@ void expect_equal(const FrameResult& a, const FrameResult& b) {
   EXPECT_EQ(a.T_curr_prev.matrix(), b.T_curr_prev.matrix());
   EXPECT_EQ(a.cov_T_curr_prev, b.cov_T_curr_prev);
   EXPECT_EQ(a.world_confidence, b.world_confidence);
-  EXPECT_EQ(a.objects_size, b.objects_size);
+  ASSERT_EQ(a.objects_size, b.objects_size);
+  for (std::size_t i = 0; i < a.objects_view().size(); ++i) {
+    const ObjectState& left = a.objects[i];
+    const ObjectState& right = b.objects[i];
+    EXPECT_EQ(left.id, right.id);
+    EXPECT_EQ(left.phase, right.phase);
+    EXPECT_EQ(left.points, right.points);
+    EXPECT_EQ(left.T_world_obj.matrix(), right.T_world_obj.matrix());
+    EXPECT_EQ(left.cov_T_world_obj, right.cov_T_world_obj);
+    EXPECT_EQ(left.M_world.matrix(), right.M_world.matrix());
+  }
   EXPECT_EQ(a.report.points_tracked, b.report.points_tracked);
   EXPECT_EQ(a.report.points_started, b.report.points_started);
   EXPECT_EQ(a.report.points_static, b.report.points_static);
@@ -85,6 +95,11 @@ TEST(Pipeline, AKnownBodyThatSetsOffSlowlyDoesNotDragTheCameraAlong) {
     }
     const FrameResult result = step(pipeline, frame, images);
     ASSERT_TRUE(result.pose_valid);
+    const auto bodies = result.objects_view();
+    if (frame == 8) {  // else there is no known body to set off
+      ASSERT_EQ(bodies.size(), 1U);
+      ASSERT_EQ(bodies[0].phase, ObjectPhase::confirmed);
+    }
     if (frame > 0) {
       const Rigid3 step_cam = before.T_world_cam.inverse() * result.T_world_cam;
       EXPECT_LT((step_cam.translation() - Eigen::Vector3d(0.03, 0, 0)).norm(), 0.0008) << "frame " << frame;
@@ -157,12 +172,13 @@ TEST(Pipeline, GreyFromTheStartIsNeverAGoodMotion) {
 TEST(Pipeline, TwoInstancesGiveIdenticalResults) {
   Pipeline first({}, kRig);
   Pipeline second({}, kRig);
-  (void)step(first, 0, plane(0));
-  (void)step(second, 0, plane(0));
-  for (int frame = 1; frame < 5; ++frame) {
-    const StereoImages images = plane(frame);
-    expect_equal(step(first, frame, images), step(second, frame, images));
+  FrameResult result;
+  for (int frame = 0; frame < 8; ++frame) {
+    const StereoImages images = plane_with_board(frame, {});
+    result = step(first, frame, images);
+    expect_equal(result, step(second, frame, images));
   }
+  EXPECT_EQ(result.objects_size, 1);
 }
 
 TEST(Pipeline, FramesThatWereMissedAreCountedAndBridged) {
