@@ -113,10 +113,7 @@ void Registry::make_room() {
   ++births_refused_;
   MovingBody* least = nullptr;
   for (MovingBody& body : bodies_) {
-    const auto frames = static_cast<std::ptrdiff_t>(body.frames_measured);
-    const bool had_its_chance =
-        !body.measured || (frames >= std::ptrdiff_t{2} * config_.confirm_frames &&
-                           frames * std::ssize(body.members) >= std::ptrdiff_t{2} * config_.confirm_point_frames);
+    const bool had_its_chance = !body.measured || supported(body, 2);
     if (body.phase != ObjectPhase::tentative || !had_its_chance) continue;
     if (least == nullptr || body.evidence < least->evidence) least = &body;
   }

@@ -47,6 +47,14 @@ bool Registry::part_of_another(const MovingBody& body) const {
   });
 }
 
+// Whether it had as many frames and points as confirmation takes, `times` over.
+bool Registry::supported(const MovingBody& body, int times) const {
+  const auto frames = static_cast<std::ptrdiff_t>(body.frames_measured);
+  const std::ptrdiff_t points = std::ssize(body.members);
+  return frames >= std::ptrdiff_t{times} * config_.confirm_frames &&
+         frames * points * points >= std::ptrdiff_t{times} * config_.confirm_support;
+}
+
 // Likelihood of the body's own motion against "it is static" (Wedel et al. 2009), summed over points and frames.
 void Registry::weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
                               std::span<const double> chi2_static, const WorldStep& world, MovingBody& body) const {
@@ -61,9 +69,7 @@ void Registry::weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<
     body.measured = false;
     return;
   }
-  const bool enough = body.frames_measured >= config_.confirm_frames &&
-                      static_cast<int>(body.members.size()) >= config_.confirm_points &&
-                      body.frames_measured * static_cast<int>(body.members.size()) >= config_.confirm_point_frames &&
+  const bool enough = supported(body, 1) && static_cast<int>(body.members.size()) >= config_.confirm_points &&
                       spread_px(pairs, body.members) >= config_.min_spread_px;
   if (enough && body.evidence > config_.confirm_evidence && moved_significantly(rig, world, body) &&
       !part_of_another(body)) {

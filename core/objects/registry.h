@@ -18,7 +18,7 @@ struct RegistryConfig {
   double min_spread_px = 4.0;       // deviation of its points along their second axis in the image
   int confirm_frames = 3;           // measured frames before a body is an object
   int confirm_points = 8;           // that support it in the frame of its confirmation
-  int confirm_point_frames = 60;    // and points times frames: few points must persist longer
+  int confirm_support = 450;        // and frames times points squared: few points agree by chance, and must persist
   double confirm_evidence = 150.0;  // log-likelihood ratio of own motion against static, summed
   double evidence_cap = 20.0;       // per point and frame
   double confirm_sigmas = 6.0;      // displacement since birth over its deviation
@@ -107,6 +107,7 @@ class Registry {
   void resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
               const WorldStep& world, std::span<BodyId> owner);
   void make_room();
+  [[nodiscard]] bool supported(const MovingBody& body, int times) const;
   void retire_ended(std::span<BodyId> owner);
   void merge_alike(PointPairs pairs, std::span<BodyId> owner);
   void release(const MovingBody& body, std::span<BodyId> owner) const;

@@ -8,15 +8,17 @@
 
 namespace pelorus {
 
-Pipeline::State::State(const PipelineConfig& c, const StereoRig& r)
+Pipeline::State::State(const PipelineConfig& c, const StereoRig& r, const PipelineWorkers& w)
     : config(c),
       rig(r),
+      workers(w),
       front_end(c.front_end, r),
       grouping(c.grouping, c.seed_points, c.two_frame_ba, c.front_end.max_points),
       moving_grouping(c.grouping, c.seed_points, c.two_frame_ba, c.front_end.max_points),
       two_frame_ba(c.two_frame_ba, c.front_end.max_points),
       net(c.front_end.max_points),
-      static_window(c.static_window),
+      ego_window(c.static_window, r, c.front_end.max_points, c.ego_motion.point_gate_chi2,
+                 w.refine != nullptr ? *w.refine : inline_worker),
       registry(c.registry, c.membership, c.identity, c.merge, c.reidentification, c.object_window, c.two_frame_ba,
                c.front_end.max_points),
       sigma_px(c.ego_motion.start_sigma_px) {
@@ -31,6 +33,7 @@ Pipeline::State::State(const PipelineConfig& c, const StereoRig& r)
   predictions.reserve(kMaxObjects + 1);
   residuals.reserve(points);
   observations.reserve(points);
+  before.reserve(points);
   rejected.reserve(points);
   refill_areas.reserve(kMaxObjects);
   outline_points.reserve(std::max(points, static_cast<std::size_t>(c.registry.max_model_points)));
@@ -112,12 +115,8 @@ void Pipeline::State::drop_unexplained() {
   rejected.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     Track& track = front_end.track_of_pair(static_cast<PointIndex>(i));
-    if (owner[i] == kWorldBody) {
-      const BodyPoint* point = static_window.find(track.id);
-      if (point != nullptr && point->observations >= 4 && point->chi2_mean > config.ego_motion.point_gate_chi2) {
-        static_window.remove(track.id);
-        owner[i] = kNoBody;
-      }
+    if (owner[i] == kWorldBody && std::find(misfits.begin(), misfits.end(), track.id) != misfits.end()) {
+      owner[i] = kNoBody;
     }
     track.unexplained = owner[i] == kNoBody ? track.unexplained + 1 : 0;
     if (track.unexplained >= config.ego_motion.unexplained_frames) rejected.push_back(track.id);

@@ -194,55 +194,24 @@ void Pipeline::State::measure_noise() {
   std::fill(roles.begin(), roles.end(), PointRole::unknown);
 }
 
+// Step by step, and drawn towards where the window saw the camera a frame ago: the first has the smaller noise from
+// frame to frame, the second drifts less.
 void Pipeline::State::refine_ego_motion() {
-  if (started && !ego_found()) {
+  if (!started) return;
+  if (!ego_found()) {
     lose_track();
     return;
   }
-  if (!started) {
-    static_window.clear();
-    return;
-  }
-  const Rigid3 T_cam_world_prev = T_world_cam.inverse();
-  Rigid3 T_cam_world = ego.H_curr_prev * T_cam_world_prev;
-  Matrix6d cov_H = ego.cov_H;
-  if (config.steps.static_window) {
-    if (static_window.frames() == 0) {
-      observations.clear();
-      for (const PointIndex i : fixed) {
-        const PointPair& pair = pairs[static_cast<std::size_t>(i)];
-        observations.push_back({pair.track, pair.prev.z_px, pair.sigma_px});
-      }
-      const auto dt = Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
-      static_window.add_frame(rig, world.time + dt, T_cam_world_prev, T_world_cam, observations);
-    }
-    observations.clear();
-    for (const PointIndex i : fixed) {
-      const PointPair& pair = pairs[static_cast<std::size_t>(i)];
-      observations.push_back({pair.track, pair.curr.z_px, pair.sigma_px});
-    }
-    T_cam_world = ego.H_curr_prev * static_window.T_cam_body();
-    static_window.add_frame(rig, world.time, T_cam_world, T_cam_world.inverse(), observations);
-    const StageOutcome outcome = static_window.adjust(rig);
-    result.report[Stage::static_window].outcome = outcome;
-    if (outcome == StageOutcome::ok) {
-      T_cam_world = static_window.T_cam_body();
-      ego.H_curr_prev = T_cam_world * static_window.T_cam_body_previous().inverse();
-      cov_H = static_window.cov_H_curr_prev();
-      static_motions.T_curr_past[0] = ego.H_curr_prev;
-    }
-  }
-  // Step by step, and drawn towards where the window sees the camera: the first has the smaller noise from frame to
-  // frame, the second does not drift.
-  const Rigid3 T_world_stepped = T_world_cam * ego.H_curr_prev.inverse();
-  const Vector6d pull = config.ego_motion.window_pull * se3_log(T_cam_world.inverse() * T_world_stepped.inverse());
-  T_world_cam = orthonormalized(se3_exp(pull) * T_world_stepped);
+  T_world_cam = T_world_cam * ego.H_curr_prev.inverse();
+  H_since_given = ego.H_curr_prev * H_since_given;
+  if (config.steps.static_window) draw_towards_window();
+  T_world_cam = orthonormalized(T_world_cam);
   world.T_world_curr = T_world_cam;
-  // The window may have moved the previous pose a little: bodies are carried from there.
+  // The previous pose is corrected alike: bodies are carried from there.
   world.T_world_prev = T_world_cam * ego.H_curr_prev;
-  world.cov_H_static = cov_H;
+  world.cov_H_static = ego.cov_H;
   const Matrix6d Ad = adjoint(T_world_cam);
-  cov_T_world_cam += Ad * cov_H * Ad.transpose();
+  cov_T_world_cam += Ad * ego.cov_H * Ad.transpose();
   if (lost) {
     // The way gone unseen is not known better than that the vehicle went on as it did.
     const double lost_s = seconds(world.time - lost_since);
@@ -253,6 +222,31 @@ void Pipeline::State::refine_ego_motion() {
   twist_cam = twist_known ? Vector6d(twist_cam + 0.7 * (twist - twist_cam)) : twist;
   twist_known = true;
   lost = false;
+}
+
+void Pipeline::State::draw_towards_window() {
+  misfits = {};
+  if (const auto answer = ego_window.collect(workers.wait_for_refine)) {
+    const Vector6d error = se3_log(answer->T_cam_world.inverse() * T_world_cam_given.inverse());
+    T_world_cam = se3_exp(config.ego_motion.window_pull * error) * T_world_cam;
+    misfits = answer->misfits;
+  }
+  result.report[Stage::static_window].outcome = ego_window.outcome();
+}
+
+// The frame goes to the window, whose answer comes with a later one.
+void Pipeline::State::give_to_window() {
+  if (!started || !ego_found() || !config.steps.static_window || !ego_window.idle()) return;
+  observations.clear();
+  before.clear();
+  for (const PointIndex i : fixed) {
+    const PointPair& pair = pairs[static_cast<std::size_t>(i)];
+    observations.push_back({pair.track, pair.curr.z_px, pair.sigma_px});
+    if (ego_window.is_new()) before.push_back({pair.track, pair.prev.z_px, pair.sigma_px});
+  }
+  ego_window.give(world.time, world.dt_s, H_since_given, world.T_world_prev, before, observations);
+  T_world_cam_given = T_world_cam;
+  H_since_given = Rigid3::Identity();
 }
 
 // Too little to stand on: the result says so; the pose goes on from the last one once points agree again.
@@ -273,7 +267,8 @@ void Pipeline::State::lose_track() {
     BodyId& body = front_end.track_of_pair(static_cast<PointIndex>(i)).body;
     if (body > kWorldBody) body = kNoBody;
   }
-  static_window.clear();
+  ego_window.forget();
+  H_since_given = Rigid3::Identity();
   static_motions.size = 0;
 }
 

@@ -5,7 +5,8 @@
 
 namespace pelorus {
 
-Pipeline::Pipeline(const PipelineConfig& config, const StereoRig& rig) : state_(std::make_unique<State>(config, rig)) {}
+Pipeline::Pipeline(const PipelineConfig& config, const StereoRig& rig, const PipelineWorkers& workers)
+    : state_(std::make_unique<State>(config, rig, workers)) {}
 Pipeline::~Pipeline() = default;
 
 // The computation procedure of one step (paper 6.1, 6.2 and Fig. 6).
@@ -46,6 +47,7 @@ const FrameResult& Pipeline::step(const StereoFrame& frame) {
     const StageTimer timer(report[Stage::refill].microseconds);
     s.start_points();
   }
+  s.give_to_window();
   s.publish();
   return s.result;
 }

@@ -5,14 +5,22 @@
 #include <memory>
 #include <span>
 
+#include "core/base/side_worker.h"
 #include "core/model/stage_data.h"
 #include "core/pipeline/config.h"
 
 namespace pelorus {
 
+// Threads lent to the step; absent ones: the step does the work itself, with the same result. Borrowed.
+struct PipelineWorkers {
+  SideWorker* refine = nullptr;
+  // Stepped, the window's answer is waited for, so that the same input gives the same bytes; live it never is.
+  bool wait_for_refine = true;
+};
+
 class Pipeline {
  public:
-  Pipeline(const PipelineConfig& config, const StereoRig& rig);
+  Pipeline(const PipelineConfig& config, const StereoRig& rig, const PipelineWorkers& workers = {});
   ~Pipeline();
   // The frame's images must be rectified and of the rig's size, its seq greater than the previous one.
   // The result is valid until the next call.

@@ -4,11 +4,12 @@
 #include <optional>
 
 #include "core/pipeline/pipeline.h"
+#include "core/refine/ego_window.h"
 
 namespace pelorus {
 
 struct Pipeline::State {
-  State(const PipelineConfig& config, const StereoRig& rig);
+  State(const PipelineConfig& config, const StereoRig& rig, const PipelineWorkers& workers);
 
   void begin(const StereoFrame& frame);
   void match_points(const StereoFrame& frame);  // 5.1: the unified matched set, two clouds
@@ -17,12 +18,14 @@ struct Pipeline::State {
   void find_world();                            // 5.2, 6.1 step 4
   void split_static_from_moving();              // 5.2.1, step 5
   void filter_static_and_moving();              // 5.2.2, 5.2.3, step 6
-  void refine_ego_motion();                     // over a window
+  void refine_ego_motion();                     // by what the window found
   void follow_bodies();                         // 6.2 step 2
   void find_new_bodies();                       // 6.1 step 7, 5.2.4
   void settle_bodies();                         // section 4: trajectories; registry
   void start_points();
+  void give_to_window();
   void lose_track();
+  void draw_towards_window();
   void publish();
 
   [[nodiscard]] bool ego_found() const { return ego_outcome == StageOutcome::ok; }
@@ -39,12 +42,14 @@ struct Pipeline::State {
 
   PipelineConfig config;
   StereoRig rig;
+  PipelineWorkers workers;
   FrontEnd front_end;
   Grouping grouping;
   Grouping moving_grouping;
   TwoFrameBa two_frame_ba;
   StaticNet net;
-  BodyWindow static_window;
+  InlineWorker inline_worker;
+  EgoWindow ego_window;
   Registry registry;
 
   // Of the present step.
@@ -61,6 +66,7 @@ struct Pipeline::State {
   StageOutcome ego_outcome = StageOutcome::not_run;
   WorldStep world;
   double world_confidence = 0;
+  std::span<const TrackId> misfits;  // of the window
 
   // Remembered.
   bool started = false;
@@ -70,6 +76,8 @@ struct Pipeline::State {
   Matrix6d cov_T_world_cam = Matrix6d::Zero();
   Vector6d twist_cam = Vector6d::Zero();  // per second: T_world_cam <- T_world_cam * exp(twist dt)
   bool twist_known = false;
+  Rigid3 T_world_cam_given = Rigid3::Identity();  // as published, of the frame the window works on
+  Rigid3 H_since_given = Rigid3::Identity();      // camera motion since that frame
   bool lost = false;
   Timestamp lost_since;
   Vector6d lost_twist = Vector6d::Zero();  // just before
@@ -79,6 +87,7 @@ struct Pipeline::State {
   int reset_counter = 0;
   std::vector<double> residuals;
   std::vector<WindowObservation> observations;
+  std::vector<WindowObservation> before;
   std::vector<TrackId> rejected;
   std::vector<RefillArea> refill_areas;
   std::vector<Eigen::Vector2d> outline_points;  // scratch of outline_of

@@ -227,7 +227,7 @@ void list(FieldList& f, RegistryConfig& c) {
   f.add("min_spread_px", c.min_spread_px, 0, 1000);
   f.add("confirm_frames", c.confirm_frames, 1, 1000);
   f.add("confirm_points", c.confirm_points, 3, 1000);
-  f.add("confirm_point_frames", c.confirm_point_frames, 0, 100000);
+  f.add("confirm_support", c.confirm_support, 0, 1000000);
   f.add("confirm_evidence", c.confirm_evidence, 0, 1e6);
   f.add("evidence_cap", c.evidence_cap, 0, 1e6);
   f.add("confirm_sigmas", c.confirm_sigmas, 0, 1000);
