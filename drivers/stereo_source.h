@@ -34,4 +34,9 @@ class StereoSource {
   [[nodiscard]] virtual std::string description() const = 0;
 };
 
+// "1 pair", "2 pairs".
+[[nodiscard]] inline std::string pairs_text(std::size_t count) {
+  return std::to_string(count) + (count == 1 ? " pair" : " pairs");
+}
+
 }  // namespace pelorus

@@ -20,17 +20,18 @@ class RecordedSource final : public StereoSource {
   RecordedSource(Recording recording, Pairing pairing, LoadedCalibration calibration)
       : recording_(std::move(recording)), pairing_(std::move(pairing)), calibration_(std::move(calibration)) {}
 
-  // Looks at the first pair: a wrong calibration is found before any work is done.
+  // Looks at the first pair that can be decoded: a wrong calibration is found before any work is done.
   Result<> probe() {
     SourcePair pair;
-    if (auto left = file_.read(pairing_.pairs.front().left, pair.left); !left) return left;
-    if (auto right = file_.read(pairing_.pairs.front().right, pair.right); !right) return right;
+    const auto found = find_readable(pairing_.pairs.size(), recording_.folder.string(),
+                                     [&](std::size_t i) { return decode(pairing_.pairs[i], pair); });
+    if (!found) return found.error();
     for (CameraIntrinsics* camera : {&calibration_.calibration.left, &calibration_.calibration.right}) {
       if (camera->width != 0) continue;
       camera->width = pair.left.width();
       camera->height = pair.left.height();
     }
-    if (auto sizes = check_sizes(pairing_.pairs.front(), pair); !sizes) return sizes;
+    if (auto sizes = check_sizes(pairing_.pairs[found.value()], pair); !sizes) return sizes;
     return check_calibration(calibration_.calibration, calibration_.origin);
   }
 
@@ -42,24 +43,22 @@ class RecordedSource final : public StereoSource {
     const RecordedPair& recorded = pairing_.pairs[next_++];
     pair.seq = recorded.seq;
     pair.capture_time = recorded.time;
-    if (auto left = file_.read(recorded.left, pair.left); !left) return in_frame(left.error(), recorded);
-    if (auto right = file_.read(recorded.right, pair.right); !right) return in_frame(right.error(), recorded);
+    if (auto decoded = decode(recorded, pair); !decoded) return in_frame(decoded.error(), recorded);
     if (auto sizes = check_sizes(recorded, pair); !sizes) return in_frame(sizes.error(), recorded);
     return true;
   }
 
   std::string description() const override {
-    std::string text =
-        recording_.format + " " + recording_.folder.string() + ": " + std::to_string(pairing_.pairs.size()) + " pairs";
+    std::string text = recording_.format + " " + recording_.folder.string() + ": " + pairs_text(pairing_.pairs.size());
     if (pairing_.period_ns > 0) text += ", " + std::to_string(pairing_.period_ns / 1'000'000) + " ms apart";
     text += "\ncalibration: " + calibration_.origin;
     for (const std::string& assumption : calibration_.assumptions) text += "\nassumed: " + assumption;
     for (const std::string& remark : recording_.remarks) text += "\nnote: " + remark;
     const std::size_t lost = pairing_.lost_left + pairing_.lost_right + pairing_.lost_both;
     if (lost > 0)
-      text += "\nlost: " + std::to_string(lost) + " pairs (" + std::to_string(pairing_.lost_left) +
-              " without left image, " + std::to_string(pairing_.lost_right) + " without right image, " +
-              std::to_string(pairing_.lost_both) + " never recorded)";
+      text += "\nlost: " + pairs_text(lost) + " (" + std::to_string(pairing_.lost_left) + " without left image, " +
+              std::to_string(pairing_.lost_right) + " without right image, " + std::to_string(pairing_.lost_both) +
+              " never recorded)";
     if (pairing_.lost_left + pairing_.lost_right > 0)
       text += ", the first at " + std::to_string(pairing_.first_lost.ns) + " ns";
     if (pairing_.longest_gap > kBridgedGap)
@@ -69,6 +68,11 @@ class RecordedSource final : public StereoSource {
   }
 
  private:
+  Result<> decode(const RecordedPair& recorded, SourcePair& pair) {
+    if (auto left = file_.read(recorded.left, pair.left); !left) return left;
+    return file_.read(recorded.right, pair.right);
+  }
+
   static Error in_frame(Error error, const RecordedPair& recorded) {
     error.detail += ", frame " + std::to_string(recorded.seq);
     return error;
@@ -119,7 +123,8 @@ Result<Recording> list_recording(const fs::path& path) {
   const std::string place = path.string();
   if (!fs::exists(path, failed)) return Error{ErrorCode::bad_input, place, "does not exist", "check the path"};
   if (!fs::is_directory(path, failed))
-    return Error{ErrorCode::bad_input, place, "is not a folder", "pass the folder of the recording"};
+    return Error{ErrorCode::bad_input, place, "is neither a folder nor an LCM log",
+                 "pass the folder of the recording, or a log written by lcm-logger"};
   if (fs::is_empty(path, failed))
     return Error{ErrorCode::bad_input, place, "the folder is empty", "pass the folder of the recording"};
   if (failed) return Error{ErrorCode::io, place, "cannot be listed: " + failed.message(), "check its permissions"};
@@ -127,8 +132,8 @@ Result<Recording> list_recording(const fs::path& path) {
   if (is_kitti_raw(path)) return list_kitti_raw(path);
   if (is_kitti_odometry(path)) return list_kitti_odometry(path);
   return Error{ErrorCode::bad_input, place, "is no known data set",
-               "expected EuRoC (mav0/cam0, mav0/cam1), KITTI odometry (image_0, image_1, times.txt) or KITTI raw "
-               "(image_00/data, image_01/data)"};
+               "expected EuRoC (mav0/cam0, mav0/cam1), KITTI odometry (image_0, image_1, times.txt), KITTI raw "
+               "(image_00/data, image_01/data) or the file of an LCM log"};
 }
 
 Result<std::unique_ptr<StereoSource>> open_dataset(const fs::path& path,

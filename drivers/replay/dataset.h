@@ -4,8 +4,8 @@
 //
 // Losses and errors: an image that is not there, on either side, costs its pair: seq has a gap, description()
 // counts it. An image that cannot be decoded or has the wrong size is an Error of next(); the following next() goes
-// on with the pair after it. Unsorted or duplicate times, a folder without frames and a calibration that cannot be
-// are Errors of opening.
+// on with the pair after it. Unsorted or duplicate times, a folder without frames or without a single pair that can be
+// decoded, and a calibration that cannot be are Errors of opening.
 
 #include <filesystem>
 #include <memory>

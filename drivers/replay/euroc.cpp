@@ -45,9 +45,9 @@ Result<std::vector<RecordedImage>> read_data_csv(const fs::path& camera_folder) 
     images.push_back(std::move(image));
     lines.push_back(number);
   }
-  if (auto order = check_order(images, [&](std::size_t i) { return csv.string() + ":" + std::to_string(lines[i]); });
-      !order)
-    return order.error();
+  const OrderCure cure{"remove one of the two lines", "sort the lines by time"};
+  const auto place = [&](std::size_t i) { return csv.string() + ":" + std::to_string(lines[i]); };
+  if (auto order = check_order(images, cure, place); !order) return order.error();
   return images;
 }
 
@@ -66,7 +66,8 @@ Result<std::vector<RecordedImage>> read_names(const fs::path& camera_folder) {
                  "an EuRoC camera folder holds data.csv and data/"};
   std::sort(images.begin(), images.end(),
             [](const auto& a, const auto& b) { return a.time != b.time ? a.time < b.time : a.file < b.file; });
-  if (auto order = check_order(images, [&](std::size_t i) { return images[i].file.string(); }); !order)
+  const OrderCure cure{"keep one image of each time", "name the images by their times"};
+  if (auto order = check_order(images, cure, [&](std::size_t i) { return images[i].file.string(); }); !order)
     return order.error();
   return images;
 }

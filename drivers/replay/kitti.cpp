@@ -69,9 +69,10 @@ Result<std::vector<RecordedImage>> read_times(const fs::path& file, LineParser p
     }
     times.push_back(std::move(image));
   }
-  if (auto order = check_order(times, [&](std::size_t i) { return file.string() + ":" + std::to_string(i + 1); });
-      !order)
-    return order.error();
+  // A line removed or moved would give every image after it a wrong time.
+  const std::string cure = "correct the time; keep the line, since line k holds the time of image k - 1";
+  const auto place = [&](std::size_t i) { return file.string() + ":" + std::to_string(i + 1); };
+  if (auto order = check_order(times, {cure, cure}, place); !order) return order.error();
   if (times.empty()) return input_error(file.string(), "holds no times", "one line per image is expected");
   return times;
 }
@@ -99,7 +100,8 @@ Result<std::vector<RecordedImage>> list_images(const fs::path& folder, const std
   if (images.empty()) return input_error(folder.string(), "holds no images", "copy the images of this camera");
   std::sort(images.begin(), images.end(),
             [](const auto& a, const auto& b) { return a.index != b.index ? a.index < b.index : a.file < b.file; });
-  if (auto order = check_order(images, [&](std::size_t i) { return images[i].file.string(); }); !order)
+  const OrderCure cure{"keep one image of each number", "correct " + times_file.string()};
+  if (auto order = check_order(images, cure, [&](std::size_t i) { return images[i].file.string(); }); !order)
     return order.error();
   return images;
 }

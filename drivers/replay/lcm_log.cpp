@@ -84,7 +84,8 @@ class LcmLogSource final : public StereoSource {
                    "log the channel of the stereo camera"};
     }
     const auto place = [this](std::size_t i) { return path_ + ", pair " + std::to_string(i); };
-    if (Result<> order = check_order(recording.left, place); !order) return order;
+    const std::string cure = "log one camera once, with its capture times as utime";
+    if (Result<> order = check_order(recording.left, {cure, cure}, place); !order) return order;
     Result<Pairing> pairing = pair_images(recording);
     if (!pairing) return pairing.error();
     pairing_ = std::move(pairing.value());
@@ -94,13 +95,14 @@ class LcmLogSource final : public StereoSource {
   Result<> calibrate(const LoadedCalibration& calibration) {
     calibration_ = calibration;
     SourcePair first;
-    if (Result<> got = decode(0, first); !got) return got;
+    const auto found = find_readable(events_.size(), path_, [&](std::size_t i) { return decode(i, first); });
+    if (!found) return found.error();
     for (CameraIntrinsics* camera : {&calibration_.calibration.left, &calibration_.calibration.right}) {
       if (camera->width != 0) continue;
       camera->width = first.left.width();
       camera->height = first.left.height();
     }
-    if (Result<> sizes = check_sizes(0, first); !sizes) return sizes;
+    if (Result<> sizes = check_sizes(found.value(), first); !sizes) return sizes;
     return check_calibration(calibration_.calibration, calibration_.origin);
   }
 
@@ -114,11 +116,11 @@ class LcmLogSource final : public StereoSource {
     return true;
   }
   [[nodiscard]] std::string description() const override {
-    std::string text = "LCM log " + path_ + ", channel " + channel_ + ": " + std::to_string(events_.size()) + " pairs";
+    std::string text = "LCM log " + path_ + ", channel " + channel_ + ": " + pairs_text(events_.size());
     if (pairing_.period_ns > 0) text += ", " + std::to_string(pairing_.period_ns / 1'000'000) + " ms apart";
     text += "\ncalibration: " + calibration_.origin;
     for (const std::string& assumption : calibration_.assumptions) text += "\nassumed: " + assumption;
-    if (pairing_.lost_both > 0) text += "\nlost: " + std::to_string(pairing_.lost_both) + " pairs (never logged)";
+    if (pairing_.lost_both > 0) text += "\nlost: " + pairs_text(pairing_.lost_both) + " (never logged)";
     if (file_.skipped_bytes() > 0) text += "\nnote: " + std::to_string(file_.skipped_bytes()) + " broken bytes skipped";
     return text;
   }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
 namespace pelorus {
 namespace {
@@ -110,16 +111,31 @@ Result<Pairing> pair_images(const Recording& recording) {
                "the cameras' time stamps must agree to 5 ms and a quarter of the frame period"};
 }
 
-Result<> check_order(const std::vector<RecordedImage>& images, const std::function<std::string(std::size_t)>& place) {
+Result<> check_order(const std::vector<RecordedImage>& images, const OrderCure& cure,
+                     const std::function<std::string(std::size_t)>& place) {
   for (std::size_t i = 1; i < images.size(); ++i) {
     if (images[i - 1].time < images[i].time) continue;
     const bool duplicate = images[i - 1].time == images[i].time;
     return Error{ErrorCode::bad_input, place(i),
                  "time stamp " + std::to_string(images[i].time.ns) + " ns " +
                      (duplicate ? "appears twice" : "is earlier than the one before it"),
-                 duplicate ? "remove one of the two lines" : "sort the images by time"};
+                 duplicate ? cure.duplicate : cure.earlier};
   }
   return Ok{};
+}
+
+Result<std::size_t> find_readable(std::size_t count, const std::string& place,
+                                  const std::function<Result<>(std::size_t)>& decode) {
+  std::optional<Error> first;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Result<> decoded = decode(i);
+    if (decoded) return i;
+    if (!first) first = decoded.error();
+  }
+  return Error{ErrorCode::bad_input, place,
+               "none of its pairs can be read (" + std::to_string(count) + " tried)" +
+                   (first ? "; the first: " + first->place + " " + first->detail : ""),
+               "copy the recording again from where it was made"};
 }
 
 Result<> drop_absent(std::vector<RecordedImage>& images, const std::filesystem::path& folder) {

@@ -52,9 +52,20 @@ struct Pairing {
 // 5 ms). seq counts nominal periods, so that every lost pair is a gap in it. An Error when nothing pairs up.
 [[nodiscard]] Result<Pairing> pair_images(const Recording& recording);
 
+// What a user has to do about times that do not increase; it depends on where the times stand.
+struct OrderCure {
+  std::string duplicate;
+  std::string earlier;
+};
+
 // Refuses unsorted and duplicate times. `place(i)` names the file and line of image i.
-[[nodiscard]] Result<> check_order(const std::vector<RecordedImage>& images,
+[[nodiscard]] Result<> check_order(const std::vector<RecordedImage>& images, const OrderCure& cure,
                                    const std::function<std::string(std::size_t)>& place);
+
+// The number of the first pair that `decode` can read: calibration and sizes are judged by it, since a damaged image
+// costs its own pair only. An Error, of the first pair, when none of `count` pairs can be read.
+[[nodiscard]] Result<std::size_t> find_readable(std::size_t count, const std::string& place,
+                                                const std::function<Result<>(std::size_t)>& decode);
 
 // Drops images whose file is not there (each is a lost pair). An Error when none is left.
 [[nodiscard]] Result<> drop_absent(std::vector<RecordedImage>& images, const std::filesystem::path& folder);

@@ -37,7 +37,7 @@ Result<bool> SyntheticSource::next(SourcePair& pair) {
 
 std::string SyntheticSource::description() const {
   return "synthetic scene '" + scene_.name + "', seed " + std::to_string(scene_.seed) + ", " +
-         std::to_string(scene_.frames) + " pairs, " + std::to_string(object_count()) + " moving bodies";
+         pairs_text(static_cast<std::size_t>(scene_.frames)) + ", " + std::to_string(object_count()) + " moving bodies";
 }
 
 void SyntheticSource::render(int frame, SourcePair& pair) {

@@ -143,56 +143,6 @@ TEST_F(Dataset, ALongGapIsReported) {
       << source->description();
 }
 
-TEST_F(Dataset, ATruncatedImageIsAnErrorWithFileAndFrameAndReadingGoesOn) {
-  const fs::path root = euroc();
-  const fs::path broken = root / "mav0/cam1/data" / png(2);
-  fs::resize_file(broken, fs::file_size(broken) / 2);
-  const auto source = open(root);
-  ASSERT_NE(source, nullptr);
-  SourcePair pair;
-  ASSERT_TRUE(source->next(pair).value());
-  ASSERT_TRUE(source->next(pair).value());
-  const auto failed = source->next(pair);
-  ASSERT_FALSE(failed.ok());
-  EXPECT_EQ(failed.error().place, broken.string());
-  EXPECT_NE(failed.error().detail.find("truncated"), std::string::npos) << failed.error().message();
-  EXPECT_NE(failed.error().detail.find("frame 2"), std::string::npos) << failed.error().message();
-  EXPECT_EQ(exit_code(failed.error().code), 3);
-  EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{3, 4, 5, 6, 7}));
-}
-
-TEST_F(Dataset, AFileThatIsNoImageAndAnEmptyOneAreErrors) {
-  const fs::path root = euroc();
-  write(root / "mav0/cam0/data" / png(0), "this is no picture");
-  expect_error(root, png(0), "cannot be decoded");
-  write(root / "mav0/cam0/data" / png(0), "");
-  expect_error(root, png(0), "empty");
-}
-
-TEST_F(Dataset, ADamagedImageBodyIsAnError) {
-  const fs::path root = euroc();
-  const fs::path broken = root / "mav0/cam0/data" / png(1);
-  std::string bytes(fs::file_size(broken), '\0');
-  std::ifstream(broken, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  for (std::size_t i = 60; i < 90; ++i) bytes[i] = static_cast<char>(bytes[i] ^ 0x5a);
-  write(broken, bytes);
-  const auto source = open(root);
-  ASSERT_NE(source, nullptr);
-  SourcePair pair;
-  ASSERT_TRUE(source->next(pair).value());
-  const auto failed = source->next(pair);
-  ASSERT_FALSE(failed.ok());
-  EXPECT_NE(failed.error().detail.find("cannot be decoded"), std::string::npos) << failed.error().message();
-}
-
-TEST_F(Dataset, SizesThatDifferFromTheOtherCameraOrTheCalibrationAreErrors) {
-  const fs::path root = euroc();
-  write_image(root / "mav0/cam1/data" / png(0), 5, 32, 48);
-  expect_error(root, "cam1", "is 32x48, the left image 64x48");
-  write_image(root / "mav0/cam0/data" / png(0), 5, 32, 48);
-  expect_error(root, "cam0", "is 32x48, the calibration is for 64x48");
-}
-
 TEST_F(Dataset, DuplicateAndUnsortedTimesNameTheirLine) {
   const fs::path root = euroc();
   const fs::path csv = root / "mav0/cam0/data.csv";
@@ -205,6 +155,27 @@ TEST_F(Dataset, DuplicateAndUnsortedTimesNameTheirLine) {
   const fs::path odometry = kitti_odometry();
   write(odometry / "times.txt", "0\n0.1\n0.2\n0.15\n0.4\n0.5\n0.6\n0.7\n");
   expect_error(odometry, "times.txt:4", "earlier than the one before");
+}
+
+TEST_F(Dataset, TheCureOfAWrongTimeKeepsItsLineWhereTheLineCounts) {
+  const fs::path odometry = kitti_odometry();
+  for (const char* times : {"0\n0.1\n0.1\n0.3\n0.4\n0.5\n0.6\n0.7\n", "0\n0.2\n0.1\n0.3\n0.4\n0.5\n0.6\n0.7\n"}) {
+    write(odometry / "times.txt", times);
+    const auto source = open_dataset(odometry);
+    ASSERT_FALSE(source.ok());
+    EXPECT_NE(source.error().place.find("times.txt:3"), std::string::npos) << source.error().message();
+    EXPECT_NE(source.error().cure.find("correct the time"), std::string::npos) << source.error().message();
+    EXPECT_EQ(source.error().cure.find("remove"), std::string::npos) << source.error().message();
+  }
+}
+
+TEST_F(Dataset, ASinglePairIsNotCalledPairs) {
+  const fs::path odometry = kitti_odometry();
+  for (int i = 1; i < kPairs; ++i) fs::remove(odometry / "image_0" / ("00000" + std::to_string(i) + ".png"));
+  const auto source = open(odometry);
+  ASSERT_NE(source, nullptr);
+  EXPECT_NE(source->description().find(": 1 pair"), std::string::npos) << source->description();
+  EXPECT_EQ(source->description().find("1 pairs"), std::string::npos) << source->description();
 }
 
 TEST_F(Dataset, FewerTimesThanImagesIsAnError) {
@@ -238,7 +209,8 @@ TEST_F(Dataset, FoldersThatAreNoRecordingAreErrors) {
   expect_error(folder_ / "hollow", "hollow", "empty");
   write(folder_ / "other/readme.txt", "x");
   expect_error(folder_ / "other", "other", "no known data set");
-  expect_error(folder_ / "other/readme.txt", "readme.txt", "is not a folder");
+  expect_error(folder_ / "other/readme.txt", "readme.txt", "is neither a folder nor an LCM log");
+  EXPECT_NE(open_dataset(folder_ / "other").error().message().find("LCM log"), std::string::npos);
 }
 
 TEST_F(Dataset, ACalibrationThatCannotBeNamesItsFile) {

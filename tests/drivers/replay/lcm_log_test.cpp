@@ -131,6 +131,20 @@ TEST_F(LcmLog, ATruncatedTailAndBrokenBytesCostTheirPairsOnly) {
   EXPECT_NE(source.value()->description().find("skipped"), std::string::npos) << source.value()->description();
 }
 
+TEST_F(LcmLog, ADamagedFirstPictureCostsItsPairOnly) {
+  write(true);
+  std::string content = test::read_text(path());
+  const std::size_t start = content.find("\xFF\xD8\xFF");
+  content.replace(start, 3, "xyz");
+  test::write_text(path(), content);
+  auto source = open_dataset(path(), given_);
+  ASSERT_TRUE(source.ok()) << source.error().message();
+  SourcePair pair;
+  EXPECT_FALSE(source.value()->next(pair).ok());
+  ASSERT_TRUE(source.value()->next(pair).value());
+  EXPECT_EQ(pair.seq, 1U);
+}
+
 TEST_F(LcmLog, WhatCannotBeUsedSaysWhy) {
   write(false);
   EXPECT_EQ(open_dataset(path()).error().code, ErrorCode::bad_calibration);
