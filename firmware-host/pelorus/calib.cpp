@@ -18,6 +18,7 @@
 #include "firmware-host/runtime/calibration.h"
 #include "firmware-host/runtime/calibration_writer.h"
 #include "firmware-host/runtime/row_check.h"
+#include "firmware-host/runtime/side_check.h"
 #include "services/overlay.h"
 
 namespace pelorus {
@@ -88,10 +89,11 @@ Result<std::optional<SourcePair>> read_recorded(const CheckArguments& arguments,
   const std::size_t count = source.value()->pair_count();
   if (arguments.pair >= count)
     return Error{ErrorCode::bad_usage, "--pair " + std::to_string(arguments.pair),
-                 "the recording has " + std::to_string(count) + " pairs", "count from 0"};
+                 "the recording has " + pairs_text(count), "count from 0"};
   SourcePair pair;
+  // Damaged pairs on the way do not matter, the one asked for does.
   for (std::size_t i = 0; i <= arguments.pair; ++i)
-    if (auto more = source.value()->next(pair); !more) return more.error();
+    if (auto more = source.value()->next(pair); !more && i == arguments.pair) return more.error();
   loaded.calibration = source.value()->calibration();
   return std::optional<SourcePair>(std::move(pair));
 }
@@ -155,9 +157,10 @@ Result<> check_pair(const SourcePair& pair, const Rectifier& rectifier, const st
   const RowAgreement rows = measure_rows(left.view(), right.view());
   std::printf("rows        offset %+.2f px, half within %.2f px (%d patches of this pair)\n", rows.median_px,
               rows.spread_px, rows.patches);
-  if (rows.patches < 20) {
-    warnings.push_back(
-        "too little in common to judge the rows: try another pair, and check that the cameras are not swapped");
+  if (sides_of(match_sides(pair, rectifier)) == Sides::exchanged) {
+    warnings.push_back("the left and right pictures are exchanged: points match only when they change places");
+  } else if (rows.patches < 20) {
+    warnings.push_back("too little in common to judge the rows: try another pair");
   } else if (std::abs(rows.median_px) > 0.5 || rows.spread_px > 0.7) {
     warnings.push_back("the rows of the rectified pair do not agree: this calibration does not fit these images");
   }
@@ -200,8 +203,15 @@ Result<int> run_check(const CheckArguments& arguments) {
 }
 
 Result<int> run_convert(const ConvertArguments& arguments) {
-  const auto loaded = load_calibration(arguments.input);
+  auto loaded = load_calibration(arguments.input);
   if (!loaded) return loaded.error();
+  // Where the calibration leaves the size open (KITTI odometry), the recording's images tell it.
+  std::error_code ignored;
+  if (loaded.value().calibration.left.width == 0 && std::filesystem::is_directory(arguments.input, ignored)) {
+    auto source = open_dataset(arguments.input, loaded.value());
+    if (!source) return source.error();
+    loaded.value().calibration = source.value()->calibration();
+  }
   if (auto written = write_calibration(loaded.value().calibration, arguments.format, arguments.out); !written)
     return written.error();
   std::printf("calibration %s\n", loaded.value().origin.c_str());

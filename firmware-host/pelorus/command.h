@@ -14,4 +14,14 @@ struct Verb {
   std::function<Result<int>()> run;
 };
 
+// CLI::PositiveNumber, whose message lists the range of double, in words.
+[[nodiscard]] inline CLI::Validator above_zero() {
+  return {[](std::string& text) {
+            double value = 0;
+            const bool good = CLI::detail::lexical_cast(text, value) && value > 0;
+            return good ? std::string() : "'" + text + "' is not a number above 0";
+          },
+          "above 0"};
+}
+
 }  // namespace pelorus

@@ -12,6 +12,7 @@
 #include "firmware-host/pelorus/replay/replay_run.h"
 #include "firmware-host/pelorus/results/result_files.h"
 #include "firmware-host/runtime/replay_source.h"
+#include "firmware-host/runtime/scene_lookup.h"
 
 namespace pelorus {
 namespace {
@@ -33,7 +34,8 @@ Result<Ok> check_folder(const fs::path& folder) {
     return Error{ErrorCode::io, folder.string(), "the output is a file, not a folder", "give --out a folder"};
   }
   const bool foreign = fs::is_directory(folder, error) && !fs::is_empty(folder, error) &&
-                       !fs::exists(folder / "dataset", error) && !fs::exists(folder / "results", error);
+                       !fs::exists(folder / "dataset", error) && !fs::exists(folder / "results", error) &&
+                       !fs::exists(folder / "dataset.partial", error);  // of a demo that was killed
   if (foreign) {
     return Error{ErrorCode::io, folder.string(), "the folder holds something else than an earlier demo",
                  "give --out another folder"};
@@ -53,6 +55,7 @@ Result<ReplaySummary> replay_dive(const fs::path& dataset, const fs::path& resul
   options.stop = ReplayInterrupt::requested;
   ProgressBar bar("processing", source.value()->pair_count(), "pairs");
   options.progress = [&bar](std::uint64_t done, std::uint64_t) { bar.update(done); };
+  options.warn = [&bar](const Error& error) { bar.tell(skipped_text(error)); };
   return run_replay(*source.value(), options);
 }
 
@@ -60,19 +63,26 @@ Result<int> run_verb(const DemoArguments& arguments) {
   const fs::path folder(arguments.out);
   const fs::path dataset = folder / "dataset";
   const fs::path results = folder / "results";
+  if (Result<std::string> scene = find_scene(arguments.scene); !scene) return scene.error();
   if (Result<Ok> checked = check_folder(folder); !checked) return checked.error();
   const ReplayInterrupt interrupt;
   std::printf("Rendering the scene '%s': a stereo dive with exact truth ...\n", arguments.scene.c_str());
   std::fflush(stdout);
   const Result<bool> rendered = render_dive(arguments.scene, arguments.frames, dataset);
   if (!rendered) return rendered.error();
-  if (!rendered.value()) return kInterruptedExitCode;
+  if (!rendered.value()) {
+    std::fprintf(stderr, "pelorus: interrupted while rendering\n");
+    return kInterruptedExitCode;
+  }
   std::printf("Processing it, without masks and without any knowledge of the scene ...\n\n");
   std::fflush(stdout);
   const Result<ReplaySummary> summary = replay_dive(dataset, results);
   if (!summary) return summary.error();
   if (summary.value().failure) return *summary.value().failure;
-  if (summary.value().interrupted) return kInterruptedExitCode;
+  if (summary.value().interrupted) {
+    std::fprintf(stderr, "pelorus: interrupted; the files in %s hold every frame up to here\n", results.c_str());
+    return kInterruptedExitCode;
+  }
   const Result<RunEvaluation> run = evaluate_run(dataset.string(), "", results, {});
   if (!run) return run.error();
   std::printf("%s\n", to_table(run.value()).c_str());
@@ -92,7 +102,7 @@ Verb add_demo(CLI::App& app) {
       ->capture_default_str();
   parser->add_option("--scene", arguments->scene, "Another shipped scene or scene file")->capture_default_str();
   parser->add_option("--frames", arguments->frames, "Render the first N frames only");
-  parser->footer("Exit codes: 0 done, 2 usage, 5 scene file, 6 output, 130 interrupted.");
+  parser->footer("Exit codes: 0 done, 2 usage, 3 bad input, 4 calibration, 5 scene file, 6 output, 130 interrupted.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
 

@@ -44,6 +44,12 @@ class ProgressBar {
     drawn_at_s_ = -1;
   }
 
+  // A line of its own above the bar.
+  void tell(const std::string& line) {
+    clear();
+    std::fprintf(stderr, "%s\n", line.c_str());
+  }
+
   [[nodiscard]] double elapsed_s() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }

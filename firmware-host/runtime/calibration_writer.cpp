@@ -173,7 +173,7 @@ Result<> write_euroc(const StereoCalibration& c, const fs::path& out) {
 Result<> write_calibration(const StereoCalibration& c, CalibrationFormat format, const fs::path& out) {
   if (c.left.width == 0 && format != CalibrationFormat::opencv)
     return Error{ErrorCode::bad_calibration, out.string(), "the image size is not known, and this format needs it",
-                 "add imageSize to the source calibration"};
+                 "convert the folder of the recording, whose images tell it, or add imageSize to the calibration"};
   switch (format) {
     case CalibrationFormat::opencv:
       return write_opencv(c, out);

@@ -99,9 +99,10 @@ Result<RunEvaluation> replay_and_evaluate(const std::string& dataset, const Abla
   ProgressBar bar(title, arguments.frames > 0 ? std::min(all, static_cast<std::size_t>(arguments.frames)) : all,
                   "pairs");
   options.progress = [&bar](std::uint64_t done, std::uint64_t) { bar.update(done); };
+  options.warn = [&bar](const Error& error) { bar.tell(skipped_text(error)); };
   const Result<ReplaySummary> summary = run_replay(*source.value(), options);
   if (!summary) return summary.error();
-  if (summary.value().failure) return *summary.value().failure;
+  if (summary.value().ended_early) return *summary.value().failure;
   return evaluate_run(dataset, arguments.calibration, folder, {});
 }
 
@@ -148,6 +149,7 @@ Result<int> run_verb(const AblateArguments& arguments) {
   }
   const Result<std::vector<std::string>> steps = chosen_steps(arguments);
   if (!steps) return steps.error();
+  if (Result<> usable = check_recording(arguments.dataset, arguments.calibration); !usable) return usable.error();
   const Result<WorkFolder> folder = WorkFolder::create(arguments.out);
   if (!folder) return folder.error();
   const ReplayInterrupt interrupt;
@@ -177,8 +179,7 @@ Result<int> run_verb(const AblateArguments& arguments) {
 Verb add_ablate(CLI::App& app) {
   auto arguments = std::make_shared<AblateArguments>();
   CLI::App* parser = app.add_subcommand("ablate", "What each step of the method is worth: one left out at a time");
-  parser->add_option("DATASET", arguments->dataset, "Data-set folder with truth, scene file or shipped scene name")
-      ->required();
+  parser->add_option("DATASET", arguments->dataset, "Data set with truth. " + std::string(kDatasetHelp))->required();
   parser->add_option("--out", arguments->out, "Keep the runs here, one folder each (default: removed at the end)");
   parser->add_option("--calib", arguments->calibration, "Calibration file instead of the data set's own");
   parser->add_option("--config", arguments->configs, "Settings file; several apply in turn")->allow_extra_args(false);
@@ -187,7 +188,10 @@ Verb add_ablate(CLI::App& app) {
   parser->add_option("--frames", arguments->frames, "Take the first N pairs only");
   parser->add_flag("--overwrite", arguments->overwrite, "Replace the runs of an earlier ablation in OUT");
   parser->add_flag("--json", arguments->json, "JSON instead of a table: SI units, radians");
-  parser->footer("Exit codes: 0 done, 2 usage, 3 bad input or no truth, 6 output, 130 interrupted.");
+  parser->footer(
+      "Exit codes: 0 done, 2 usage, 3 bad input or no truth, 4 calibration, 5 configuration, 6 output, 130 "
+      "interrupted.\n"
+      "Damaged pairs are skipped and told of.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
 

@@ -49,7 +49,7 @@ Verb add_eval(CLI::App& app) {
   parser
       ->add_option("--gate-m", arguments->config.association.centre_gate_m,
                    "How far an object's points may lie from a body's centre to be that body")
-      ->check(CLI::PositiveNumber)
+      ->check(above_zero())
       ->capture_default_str();
   parser->footer("Exit codes: 0 evaluated, 2 usage, 3 bad input or no truth, 4 calibration.");
   return {parser, [arguments] { return run_verb(*arguments); }};

@@ -23,7 +23,7 @@ struct ReplayArguments {
   std::vector<std::string> configs;
   std::uint64_t frames = 0;
   bool overlay = false;
-  int overlay_every = 1;
+  int overlay_every = 0;  // 0: not given
   bool realtime = false;
   bool stepped = false;
   bool overwrite = false;
@@ -37,33 +37,34 @@ Result<int> run_verb(const ReplayArguments& arguments) {
   // The source first: a mistyped data set must not leave an output folder behind.
   Result<std::unique_ptr<StereoSource>> source = open_source(arguments.dataset, arguments.calibration);
   if (!source) return source.error();
+  if (auto sides = check_recording(arguments.dataset, arguments.calibration); !sides) return sides.error();
   std::fprintf(stderr, "%s\n", source.value()->description().c_str());
   if (Result<Ok> ready = prepare_output_folder(arguments.out, arguments.overwrite); !ready) return ready.error();
 
   options.out_folder = arguments.out;
   options.max_frames = arguments.frames;
   options.realtime = arguments.realtime;
-  options.overlay_every = arguments.overlay ? arguments.overlay_every : 0;
+  options.overlay_every = arguments.overlay_every > 0 ? arguments.overlay_every : arguments.overlay ? 1 : 0;
   options.stop = ReplayInterrupt::requested;
   const ReplayInterrupt interrupt;
   const std::size_t all = source.value()->pair_count();
   ProgressBar bar("replaying", arguments.frames > 0 ? std::min(all, static_cast<std::size_t>(arguments.frames)) : all,
                   "pairs");
   options.progress = [&bar](std::uint64_t done, std::uint64_t) { bar.update(done); };
-  options.warn = [&bar](const Error& error) {
-    bar.clear();
-    std::fprintf(stderr, "pelorus: pair skipped: %s\n", error.message().c_str());
-  };
+  options.warn = [&bar](const Error& error) { bar.tell(skipped_text(error)); };
   Result<ReplaySummary> summary = run_replay(*source.value(), options);
   bar.clear();
   if (!summary) return summary.error();
   std::printf("%sresults  %s\n", to_text(summary.value()).c_str(), arguments.out.c_str());
-  if (summary.value().failure) return *summary.value().failure;
+  std::fflush(stdout);  // before what follows on stderr, also when both go to one file
+  if (summary.value().ended_early) return *summary.value().failure;
   if (summary.value().interrupted) {
     std::fprintf(stderr, "pelorus: interrupted; the files hold every frame up to here\n");
     return kInterruptedExitCode;
   }
-  return 0;
+  if (!summary.value().failure) return 0;
+  std::fprintf(stderr, "%s\n", incomplete_text(summary.value()).c_str());
+  return exit_code(summary.value().failure->code);
 }
 
 }  // namespace
@@ -71,26 +72,24 @@ Result<int> run_verb(const ReplayArguments& arguments) {
 Verb add_replay(CLI::App& app) {
   auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* parser = app.add_subcommand("replay", "Recorded frames through the pipeline into result files");
-  parser->add_option("DATASET", arguments->dataset, "Data-set folder (EuRoC, KITTI), scene file or shipped scene name")
-      ->required();
+  parser->add_option("DATASET", arguments->dataset, kDatasetHelp)->required();
   parser->add_option("--out", arguments->out, "Output folder: camera.tum, objects.csv, frames.csv, timing.csv")
       ->required();
   parser->add_option("--calib", arguments->calibration, "Calibration file instead of the data set's own");
   parser->add_option("--config", arguments->configs, "Settings file (config/pelorus.yaml); several apply in turn")
       ->allow_extra_args(false);
   parser->add_option("--frames", arguments->frames, "Take the first N pairs only");
-  parser->add_flag("--overlay", arguments->overlay, "Write annotated pictures to OUT/overlay");
-  parser->add_option("--overlay-every", arguments->overlay_every, "Picture of every N-th frame")
-      ->check(CLI::PositiveNumber);
+  parser->add_flag("--overlay", arguments->overlay, "Write an annotated picture of each frame to OUT/overlay");
+  parser->add_option("--overlay-every", arguments->overlay_every, "Only of every N-th frame (implies --overlay)")
+      ->check(above_zero());
   CLI::Option* realtime =
       parser->add_flag("--realtime", arguments->realtime, "Feed at the recorded times; when late the newest pair wins");
   parser->add_flag("--stepped", arguments->stepped, "Every pair, as fast as possible (default)")->excludes(realtime);
   parser->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in OUT");
   parser->footer(
       "Exit codes: 0 done, 2 usage, 3 bad input, 4 calibration, 5 configuration, 6 output, 130 interrupted.\n"
-      "Up to three damaged pairs in a row are skipped and told of; the exit code is still 3. On an error that ends "
-      "the\n"
-      "run everything processed before it is kept.");
+      "Damaged pairs are skipped and told of, up to three in a row, at the start any number: the run goes on, and its\n"
+      "exit code is 3, also for a single one. On an error that ends the run everything processed before it is kept.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
 

@@ -9,12 +9,6 @@
 
 namespace pelorus {
 
-bool is_scene(const std::string& dataset) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(dataset, ignored)) return false;
-  return dataset.find('/') == std::string::npos || std::filesystem::is_regular_file(dataset, ignored);
-}
-
 Result<bool> render_dive(const std::string& scene_name, std::uint64_t max_frames, const std::filesystem::path& folder) {
   const Result<std::string> path = find_scene(scene_name);
   if (!path) return path.error();

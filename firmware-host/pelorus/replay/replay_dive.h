@@ -10,9 +10,6 @@
 
 namespace pelorus {
 
-// True for a scene file or a shipped scene's name, false for a data-set folder.
-[[nodiscard]] bool is_scene(const std::string& dataset);
-
 // Renders into `folder`, replacing what is there; max_frames 0 = the scene's. Shows a progress bar. False: interrupted
 // (ReplayInterrupt), nothing left behind.
 [[nodiscard]] Result<bool> render_dive(const std::string& scene, std::uint64_t max_frames,

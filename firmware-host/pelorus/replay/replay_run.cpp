@@ -50,6 +50,8 @@ class PairFeed {
   [[nodiscard]] std::uint64_t pairs_read() const { return read_; }
   [[nodiscard]] bool stopped() const { return stopped_; }
   [[nodiscard]] std::uint64_t unreadable() const { return unreadable_; }
+  // Of these, the ones between readable pairs: only they are gaps in seq.
+  [[nodiscard]] std::uint64_t bridged() const { return bridged_; }
   [[nodiscard]] const std::optional<Error>& first_unreadable() const { return first_unreadable_; }
 
  private:
@@ -65,14 +67,16 @@ class PairFeed {
     }
     return more;
   }
-  // A damaged image costs its pair, told and counted; more of them in a row than the method bridges end the run.
+  // A damaged image costs its pair, told and counted; more of them in a row than the method bridges end the run. Before
+  // the first readable pair there is nothing to bridge.
   Result<bool> next_readable(SourcePair& pair) {
-    constexpr int kBridgedPairs = 3;
-    for (int in_a_row = 0;; ++in_a_row) {
+    constexpr std::uint64_t kBridgedPairs = 3;
+    for (std::uint64_t in_a_row = 0;; ++in_a_row) {
       Result<bool> more = source_.next(pair);
+      if (more.ok() && more.value() && read_ > 0) bridged_ += in_a_row;
       if (more.ok()) return more;
       if (!first_unreadable_) first_unreadable_ = more.error();
-      if (in_a_row == kBridgedPairs) return more;
+      if (in_a_row == kBridgedPairs && read_ > 0) return more;
       ++unreadable_;
       if (options_.warn) options_.warn(more.error());
     }
@@ -100,6 +104,7 @@ class PairFeed {
   std::uint64_t read_ = 0;
   std::uint64_t dropped_ = 0;
   std::uint64_t unreadable_ = 0;
+  std::uint64_t bridged_ = 0;
   std::optional<Error> first_unreadable_;
 };
 
@@ -120,15 +125,16 @@ class SummaryCounter {
 
   [[nodiscard]] ReplaySummary finish(const PairFeed& feed, std::optional<Error> failure) {
     summary_.dropped = feed.dropped();
-    // A pair dropped by the feed or unreadable leaves the same gap in seq as one missing from the recording.
+    // A pair dropped by the feed or bridged leaves the same gap in seq as one missing from the recording.
     summary_.missing -= std::min(summary_.missing, summary_.dropped);
     summary_.unreadable = feed.unreadable();
-    summary_.missing -= std::min(summary_.missing, summary_.unreadable);
+    summary_.missing -= std::min(summary_.missing, feed.bridged());
     summary_.objects_confirmed = static_cast<int>(confirmed_.size());
     std::sort(step_us_.begin(), step_us_.end());
     summary_.median_step_ms = quantile_ms(0.5);
     summary_.p99_step_ms = quantile_ms(0.99);
     summary_.interrupted = feed.stopped();
+    summary_.ended_early = failure.has_value();
     summary_.failure = failure ? std::move(failure) : feed.first_unreadable();
     return summary_;
   }
@@ -227,6 +233,12 @@ Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& opti
   std::optional<Error> failure;
   if (!outcome) failure = outcome.error();
   return counter.finish(feed, std::move(failure));
+}
+
+std::string skipped_text(const Error& error) { return "pelorus: pair skipped: " + error.message(); }
+
+std::string incomplete_text(const ReplaySummary& summary) {
+  return "pelorus: finished, but " + pairs_text(summary.unreadable) + " of the recording could not be read";
 }
 
 std::string to_text(const ReplaySummary& summary) {

@@ -40,9 +40,15 @@ struct ReplaySummary {
   double median_step_ms = 0;
   double p99_step_ms = 0;
   bool interrupted = false;  // stop() said so
+  bool ended_early = false;  // by the failure below
   // Why the run ended early, or else the first pair that could not be read; files hold everything that could.
   std::optional<Error> failure;
 };
+
+// What ReplayOptions::warn has to say of a pair.
+[[nodiscard]] std::string skipped_text(const Error& error);
+// The line for people about a run that went to its end without some of the pairs.
+[[nodiscard]] std::string incomplete_text(const ReplaySummary& summary);
 
 // An Error here means that nothing could be started (calibration, output); later failures are in the summary.
 [[nodiscard]] Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& options);

@@ -48,8 +48,14 @@ bool is_synthetic_dive(const fs::path& mav0) {
   return false;
 }
 
+void AslWriter::RemoveFolder::operator()(const fs::path* folder) const {
+  std::error_code ignored;
+  fs::remove_all(*folder, ignored);
+  delete folder;
+}
+
 AslWriter::AslWriter(fs::path folder, bool replace)
-    : folder_(std::move(folder)), partial_(folder_.string() + ".partial"), replace_(replace) {}
+    : folder_(std::move(folder)), partial_(new fs::path(folder_.string() + ".partial")), replace_(replace) {}
 
 Result<AslWriter> AslWriter::open(const fs::path& folder, bool replace, const synthetic::SyntheticSource& source) {
   std::error_code error;
@@ -58,13 +64,13 @@ Result<AslWriter> AslWriter::open(const fs::path& folder, bool replace, const sy
   if (fs::exists(target, error) && !fs::is_directory(target, error))
     return Error{ErrorCode::io, target.string(), "is a file", "name a folder that does not exist yet"};
   if (fs::exists(target, error) && !fs::is_empty(target, error) && !replace)
-    return Error{ErrorCode::io, target.string(), "exists and is not empty", "name another folder, or add --force"};
+    return Error{ErrorCode::io, target.string(), "exists and is not empty", "name another folder, or add --overwrite"};
   // A folder of recordings given by mistake must survive.
   if (replace && fs::exists(target, error) && !fs::is_empty(target, error) && !is_synthetic_dive(target / "mav0"))
     return Error{ErrorCode::io, target.string(), "holds something else than a synthetic dive; it is not replaced",
                  "give another folder, or remove it yourself"};
   AslWriter writer(target, replace);
-  fs::remove_all(writer.partial_, error);  // left by a run that was broken off
+  fs::remove_all(*writer.partial_, error);  // left by a run that was broken off
   Result<> started = writer.write_headers(source);
   if (!started) return started.error();
   return writer;
@@ -73,33 +79,33 @@ Result<AslWriter> AslWriter::open(const fs::path& folder, bool replace, const sy
 Result<> AslWriter::write_headers(const synthetic::SyntheticSource& source) {
   std::error_code error;
   const auto open_csv = [&](const std::string& name, const char* header, std::ofstream& file) {
-    fs::create_directories(partial_ / name, error);
-    file.open(partial_ / name / "data.csv");
+    fs::create_directories(*partial_ / name, error);
+    file.open(*partial_ / name / "data.csv");
     file << header << '\n';
     return !error && file.good();
   };
   for (int side = 0; side < 2; ++side) {
-    fs::create_directories(partial_ / camera_folder(side) / "data", error);
-    if (error) return io_error(partial_, "cannot be created: " + error.message());
+    fs::create_directories(*partial_ / camera_folder(side) / "data", error);
+    if (error) return io_error(*partial_, "cannot be created: " + error.message());
     if (!open_csv(camera_folder(side), "#timestamp [ns],filename", lists_[side]))
-      return io_error(partial_ / camera_folder(side) / "data.csv", "cannot be written");
+      return io_error(*partial_ / camera_folder(side) / "data.csv", "cannot be written");
     Result<> written = write_camera(side, source.calibration(), source.scene().camera.rate_hz);
     if (!written) return written;
   }
   if (!open_csv("mav0/state_groundtruth_estimate0",
                 "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []",
                 camera_truth_))
-    return io_error(partial_, "the truth cannot be written");
+    return io_error(*partial_, "the truth cannot be written");
   object_truth_.resize(static_cast<std::size_t>(source.object_count()));
   for (std::size_t k = 0; k < object_truth_.size(); ++k) {
     if (!open_csv("mav0/object" + std::to_string(k + 1), "#timestamp_ns, p_x, p_y, p_z, q_w, q_x, q_y, q_z, visible_px",
                   object_truth_[k]))
-      return io_error(partial_, "the truth cannot be written");
+      return io_error(*partial_, "the truth cannot be written");
     const synthetic::Body& body = source.object_body(static_cast<int>(k));
-    std::ofstream box(partial_ / ("mav0/object" + std::to_string(k + 1)) / "body.csv");
+    std::ofstream box(*partial_ / ("mav0/object" + std::to_string(k + 1)) / "body.csv");
     box << "#name, size_x [m], size_y [m], size_z [m]\n"
         << body.name << ',' << body.size_m.x() << ',' << body.size_m.y() << ',' << body.size_m.z() << '\n';
-    if (!box.flush()) return io_error(partial_, "the size of a body cannot be written");
+    if (!box.flush()) return io_error(*partial_, "the size of a body cannot be written");
   }
   return Ok{};
 }
@@ -125,7 +131,7 @@ Result<> AslWriter::write_camera(int side, const StereoCalibration& calibration,
                 "distortion_model: radial-tangential\n"
                 "distortion_coefficients: [0.0, 0.0, 0.0, 0.0]\n",
                 side, x_m, rate_hz, k.width, k.height, k.fx_px, k.fy_px, k.cx_px, k.cy_px);
-  const fs::path path = partial_ / camera_folder(side) / "sensor.yaml";
+  const fs::path path = *partial_ / camera_folder(side) / "sensor.yaml";
   std::ofstream file(path);
   file << text;
   file.close();
@@ -135,7 +141,7 @@ Result<> AslWriter::write_camera(int side, const StereoCalibration& calibration,
 
 Result<> AslWriter::append(int frame, const SourcePair& pair, const synthetic::SyntheticSource& source) {
   const std::string stamp = std::to_string(pair.capture_time.ns);
-  const auto image_path = [&](int side) { return partial_ / camera_folder(side) / "data" / (stamp + ".png"); };
+  const auto image_path = [&](int side) { return *partial_ / camera_folder(side) / "data" / (stamp + ".png"); };
   bool right_written = false;
   {
     // Packing takes about as long as rendering: both sides at once.
@@ -150,7 +156,7 @@ Result<> AslWriter::append(int frame, const SourcePair& pair, const synthetic::S
     object_truth_[k] << stamp << ',' << pose_csv(source.T_world_obj(object, frame)) << ',' << source.visible_px(object)
                      << '\n';
   }
-  if (!lists_[0] || !lists_[1] || !camera_truth_) return io_error(partial_, "the lists cannot be written");
+  if (!lists_[0] || !lists_[1] || !camera_truth_) return io_error(*partial_, "the lists cannot be written");
   return Ok{};
 }
 
@@ -159,14 +165,14 @@ Result<> AslWriter::finish() {
   for (std::ofstream& file : object_truth_) files.push_back(&file);
   for (std::ofstream* file : files) {
     file->close();
-    if (!*file) return io_error(partial_, "the lists cannot be written");
+    if (!*file) return io_error(*partial_, "the lists cannot be written");
   }
   std::error_code error;
   if (replace_) fs::remove_all(folder_, error);
   fs::remove(folder_, error);  // an empty folder of that name
   error.clear();
-  fs::rename(partial_, folder_, error);
-  if (error) return io_error(folder_, "cannot take the name from " + partial_.string() + ": " + error.message());
+  fs::rename(*partial_, folder_, error);
+  if (error) return io_error(folder_, "cannot take the name from " + partial_->string() + ": " + error.message());
   return Ok{};
 }
 

@@ -2,10 +2,11 @@
 // Writes a synthetic dive as an EuRoC ASL folder: mav0/cam0, mav0/cam1 (data.csv, sensor.yaml, data/<ns>.png),
 // mav0/state_groundtruth_estimate0 (T_world_body, body = rectified left camera) and, per moving body k = 1, 2, ...,
 // mav0/object<k>/data.csv (T_world_obj, visible_px) and body.csv (name, box). Nothing bears the final name before
-// everything is written. Thread-bound.
+// everything is written, and a dive that is not finished leaves nothing behind. Thread-bound.
 
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -29,11 +30,15 @@ class AslWriter {
 
  private:
   AslWriter(std::filesystem::path folder, bool replace);
+  struct RemoveFolder {
+    void operator()(const std::filesystem::path* folder) const;
+  };
   [[nodiscard]] Result<> write_headers(const synthetic::SyntheticSource& source);
   [[nodiscard]] Result<> write_camera(int side, const StereoCalibration& calibration, double rate_hz);
 
   std::filesystem::path folder_;
-  std::filesystem::path partial_;
+  // Removed, with what it holds, unless it got its final name.
+  std::unique_ptr<const std::filesystem::path, RemoveFolder> partial_;
   bool replace_;
   std::ofstream lists_[2];
   std::ofstream camera_truth_;

@@ -8,6 +8,7 @@
 #include "drivers/synthetic/scene_file.h"
 #include "drivers/synthetic/synthetic_source.h"
 #include "firmware-host/pelorus/progress_bar.h"
+#include "firmware-host/pelorus/replay/replay_interrupt.h"
 #include "firmware-host/pelorus/synth/asl_writer.h"
 #include "firmware-host/runtime/scene_lookup.h"
 
@@ -21,7 +22,7 @@ struct SynthOptions {
   std::uint64_t seed = 0;
   bool seed_given = false;
   int threads = 0;
-  bool force = false;
+  bool overwrite = false;
 };
 
 struct Sighting {
@@ -30,13 +31,15 @@ struct Sighting {
   int last = -1;
 };
 
-Result<> render_all(synthetic::SyntheticSource& source, AslWriter& writer, std::vector<Sighting>& sightings,
-                    ProgressBar& bar) {
+// False: interrupted.
+Result<bool> render_all(synthetic::SyntheticSource& source, AslWriter& writer, std::vector<Sighting>& sightings,
+                        ProgressBar& bar) {
   SourcePair pair;
   for (int frame = 0; frame < source.scene().frames; ++frame) {
+    if (ReplayInterrupt::requested()) return false;
     source.render(frame, pair);
     Result<> written = writer.append(frame, pair, source);
-    if (!written) return written;
+    if (!written) return written.error();
     for (std::size_t k = 0; k < sightings.size(); ++k) {
       if (source.visible_px(static_cast<int>(k)) == 0) continue;
       ++sightings[k].frames;
@@ -45,7 +48,8 @@ Result<> render_all(synthetic::SyntheticSource& source, AslWriter& writer, std::
     }
     bar.update(static_cast<std::size_t>(frame) + 1);
   }
-  return writer.finish();
+  if (Result<> finished = writer.finish(); !finished) return finished.error();
+  return true;
 }
 
 Result<int> run_synth(const SynthOptions& options) {
@@ -56,25 +60,31 @@ Result<int> run_synth(const SynthOptions& options) {
   if (options.frames > 0) scene.value().frames = options.frames;
   if (options.seed_given) scene.value().reseed(options.seed);
   synthetic::SyntheticSource source(scene.value(), options.threads);
-  Result<AslWriter> writer = AslWriter::open(options.out, options.force, source);
+  Result<AslWriter> writer = AslWriter::open(options.out, options.overwrite, source);
   if (!writer) return writer.error();
 
   std::printf("%s\n", source.description().c_str());
   std::fflush(stdout);
   ProgressBar bar("rendering", source.pair_count(), "pairs");
   std::vector<Sighting> sightings(static_cast<std::size_t>(source.object_count()));
-  Result<> rendered = render_all(source, writer.value(), sightings, bar);
+  const ReplayInterrupt interrupt;
+  Result<bool> rendered = render_all(source, writer.value(), sightings, bar);
   bar.clear();
   if (!rendered) return rendered.error();
+  if (!rendered.value()) {
+    std::fprintf(stderr, "pelorus: interrupted; an unfinished dive is not kept\n");
+    return kInterruptedExitCode;
+  }
   for (std::size_t k = 0; k < sightings.size(); ++k) {
     const Sighting& seen = sightings[k];
     const std::string& name = source.object_body(static_cast<int>(k)).name;
-    std::printf("object%zu %s: in view in %d frames", k + 1, name.c_str(), seen.frames);
+    std::printf("object%zu %s: in view in %d frame%s", k + 1, name.c_str(), seen.frames, seen.frames == 1 ? "" : "s");
     if (seen.frames > 0) std::printf(" (%d to %d)", seen.first, seen.last);
     std::printf("\n");
   }
-  std::printf("%d pairs written to %s in %.1f s, %.1f pairs/s\n", source.scene().frames, options.out.c_str(),
-              bar.elapsed_s(), source.scene().frames / bar.elapsed_s());
+  std::printf("%s written to %s in %.1f s, %.1f pairs/s\n",
+              pairs_text(static_cast<std::size_t>(source.scene().frames)).c_str(), options.out.c_str(), bar.elapsed_s(),
+              source.scene().frames / bar.elapsed_s());
   return 0;
 }
 
@@ -84,25 +94,25 @@ Verb add_synth(CLI::App& app) {
   auto options = std::make_shared<SynthOptions>();
   CLI::App* parser = app.add_subcommand("synth", "Render a synthetic dive with exact truth (EuRoC ASL folder)");
   parser
-      ->add_option("scene", options->scene,
+      ->add_option("SCENE", options->scene,
                    "Scene file, or the name of a shipped scene: paper, static, "
                    "appear_occlude_stop, large_body, abreast, turbid, shapes")
-      ->required()
-      ->type_name("SCENE");
-  parser->add_option("--out", options->out, "Folder to write; must not exist or be empty")
+      ->required();
+  parser->add_option("--out", options->out, "Folder to write; absent or empty, or see --overwrite")
       ->required()
       ->type_name("DIR");
-  parser->add_option("--frames", options->frames, "Number of stereo pairs (default: the scene's)")
-      ->check(CLI::PositiveNumber);
+  parser->add_option("--frames", options->frames, "Number of stereo pairs (default: the scene's)")->check(above_zero());
   CLI::Option* seed =
       parser->add_option("--seed", options->seed, "Another world of the same kind (default: the scene's)");
   parser->add_option("--threads", options->threads, "Threads to render with (default: all); never changes the result")
       ->check(CLI::Range(1, 256));
-  parser->add_flag("--force", options->force, "Replace an existing dive of ours");
+  parser->add_flag("--overwrite", options->overwrite, "Replace an earlier synthetic dive in DIR");
+  // Its earlier name: an empty group keeps it out of the help.
+  parser->add_flag("--force", options->overwrite)->group("");
   parser->footer(
       "Example: pelorus synth paper --out /tmp/dive\n"
       "Truth: mav0/state_groundtruth_estimate0 (left camera), mav0/object<k> (moving bodies).\n"
-      "Exit codes: 0 done, 2 usage, 5 scene file, 6 input/output.");
+      "Exit codes: 0 done, 2 usage, 5 scene file, 6 input/output, 130 interrupted.");
   return {parser, [options, seed] {
             options->seed_given = seed->count() > 0;
             return run_synth(*options);

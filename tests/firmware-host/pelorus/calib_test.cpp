@@ -57,6 +57,14 @@ TEST_F(Calib, ConvertsAndTheResultChecks) {
   }
 }
 
+TEST_F(Calib, TheImagesTellTheSizeThatTheCalibrationLacks) {
+  const fs::path root = kitti_odometry();
+  const fs::path out = folder_ / "camchain.yaml";
+  EXPECT_EQ(run({"calib", "convert", (root / "calib.txt").string(), "--to", "kalibr", "--out", out.string()}), 4);
+  EXPECT_EQ(run({"calib", "convert", root.string(), "--to", "kalibr", "--out", out.string()}), 0);
+  EXPECT_NE(test::read_text(out).find("[64, 48]"), std::string::npos) << test::read_text(out);
+}
+
 TEST_F(Calib, ExitCodesTellWhatWasWrong) {
   const fs::path root = euroc();
   EXPECT_EQ(run({"calib"}), 2);

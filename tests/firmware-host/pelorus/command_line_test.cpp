@@ -19,9 +19,10 @@ struct Outcome {
   std::string text;  // stdout and stderr
 };
 
-Outcome run_tool(const std::string& arguments) {
+// `before`: shell commands that come first.
+Outcome run_tool(const std::string& arguments, const std::string& before = "") {
   Outcome outcome;
-  const std::string command = std::string(PELORUS_TOOL) + " " + arguments + " 2>&1";
+  const std::string command = before + PELORUS_TOOL + " " + arguments + " 2>&1";
   std::FILE* pipe = popen(command.c_str(), "r");
   std::array<char, 512> part{};
   while (pipe && std::fgets(part.data(), part.size(), pipe)) outcome.text += part.data();
@@ -61,6 +62,73 @@ TEST(CommandLine, MistypedDataSetLeavesNoOutputBehind) {
   EXPECT_NE(outcome.exit_code, 0);
   EXPECT_NE(outcome.text.find("/nonexistent/set"), std::string::npos) << outcome.text;
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+}
+
+TEST(CommandLine, MistypedPathIsNamedWithWhatIsThere) {
+  const TemporaryFolder folder;
+  write_text(folder.path() / "dives" / "monday" / "note.txt", "x");
+  const std::string there = "cd " + folder.path().string() + " && ";
+  for (const char* verb : {"replay dives/mondy --out out", "replay mondy --out out", "ablate dives/mondy"}) {
+    const Outcome outcome = run_tool(verb, there);
+    EXPECT_EQ(outcome.exit_code, 3) << outcome.text;
+    EXPECT_NE(outcome.text.find("mondy: does not exist"), std::string::npos) << outcome.text;
+    EXPECT_NE(outcome.text.find("paper"), std::string::npos) << "the shipped scenes\n" << outcome.text;
+  }
+  EXPECT_NE(run_tool("replay dives/mondy --out out", there).text.find("dives holds monday"), std::string::npos);
+  EXPECT_NE(run_tool("replay mondy --out out", there).text.find("this folder holds dives"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "out"));
+  const Outcome text = run_tool("replay dives/monday/note.txt --out out", there);
+  EXPECT_EQ(text.exit_code, 3) << text.text;
+  EXPECT_NE(text.text.find("neither an LCM log nor a scene file"), std::string::npos) << text.text;
+}
+
+TEST(CommandLine, HelpNamesEverySourceAndExitCode) {
+  EXPECT_NE(run_tool("replay --help").text.find("LCM log"), std::string::npos);
+  EXPECT_NE(run_tool("demo --help").text.find("3 bad input, 4 calibration"), std::string::npos);
+  const std::string synth = run_tool("synth --help").text;
+  EXPECT_NE(synth.find("--overwrite"), std::string::npos) << synth;
+  EXPECT_EQ(synth.find("--force"), std::string::npos) << synth;
+}
+
+TEST(CommandLine, OverlayEveryImpliesOverlay) {
+  const TemporaryFolder folder;
+  const std::filesystem::path out = folder.path() / "out";
+  const Outcome outcome =
+      run_tool("replay " + small_scene(folder, 4) + " --out " + out.string() + " --overlay-every 3");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.text;
+  EXPECT_TRUE(std::filesystem::exists(out / "overlay" / "000000.png"));
+  EXPECT_FALSE(std::filesystem::exists(out / "overlay" / "000001.png"));
+  EXPECT_TRUE(std::filesystem::exists(out / "overlay" / "000003.png"));
+}
+
+TEST(CommandLine, ADamagedFirstImageIsSkippedAndTheCodeIsThree) {
+  const TemporaryFolder folder;
+  const std::filesystem::path dive = folder.path() / "dive";
+  const std::string out = (folder.path() / "out").string();
+  ASSERT_EQ(run_tool("synth " + small_scene(folder, 4) + " --out " + dive.string()).exit_code, 0);
+  const std::filesystem::path image = dive / "mav0/cam1/data/1600000000000000000.png";
+  ASSERT_TRUE(std::filesystem::exists(image));
+  std::filesystem::resize_file(image, std::filesystem::file_size(image) / 2);
+  const Outcome outcome = run_tool("replay " + dive.string() + " --out " + out);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.text.find("pair skipped: " + image.string()), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("3 stepped"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("finished, but 1 pair of the recording could not be read"), std::string::npos)
+      << outcome.text;
+}
+
+TEST(CommandLine, ExchangedPicturesEndReplayBeforeItWrites) {
+  const TemporaryFolder folder;
+  const std::filesystem::path mav0 = folder.path() / "dive" / "mav0";
+  const std::string out = (folder.path() / "out").string();
+  ASSERT_EQ(run_tool("synth static --frames 3 --out " + (folder.path() / "dive").string()).exit_code, 0);
+  std::filesystem::rename(mav0 / "cam0" / "data", mav0 / "keep");
+  std::filesystem::rename(mav0 / "cam1" / "data", mav0 / "cam0" / "data");
+  std::filesystem::rename(mav0 / "keep", mav0 / "cam1" / "data");
+  const Outcome outcome = run_tool("replay " + (folder.path() / "dive").string() + " --out " + out);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.text.find("exchange the two folders"), std::string::npos) << outcome.text;
+  EXPECT_FALSE(std::filesystem::exists(out));
 }
 
 TEST(CommandLine, ReplayThenEvalOfASceneGivesTableAndJson) {
@@ -115,6 +183,42 @@ TEST(CommandLine, InterruptedReplayEndsWithValidFilesAndCode130) {
   const int status = std::system(("bash -c 'set -m; " + command + "' 2>/dev/null").c_str());
   EXPECT_EQ(WEXITSTATUS(status), 130);
   EXPECT_EQ(test::read_text(out + "/frames.csv").back(), '\n');
+}
+
+TEST(CommandLine, InterruptedRenderingLeavesNothingBehindAndTheFolderUsable) {
+  const TemporaryFolder folder;
+  const std::string scene = small_scene(folder, 100000);
+  const std::string dive = (folder.path() / "dive").string();
+  const std::string demo = (folder.path() / "demo").string();
+  const auto interrupted = [](const std::string& arguments, const std::string& first_image_folder) {
+    const std::string command = std::string(PELORUS_TOOL) + " " + arguments + " >/dev/null 2>&1 & p=$!; while [ $(ls " +
+                                first_image_folder +
+                                " 2>/dev/null | wc -l) -lt 3 ]; do kill -0 $p || exit 99; sleep 0.05; done; "
+                                "kill -INT $p; wait $p";
+    return WEXITSTATUS(std::system(("bash -c 'set -m; " + command + "' 2>/dev/null").c_str()));
+  };
+  EXPECT_EQ(interrupted("synth " + scene + " --out " + dive, dive + ".partial/mav0/cam0/data"), 130);
+  EXPECT_FALSE(std::filesystem::exists(dive));
+  EXPECT_FALSE(std::filesystem::exists(dive + ".partial"));
+  const std::string demo_arguments = "demo --scene " + scene + " --out " + demo;
+  EXPECT_EQ(interrupted(demo_arguments, demo + "/dataset.partial/mav0/cam0/data"), 130);
+  EXPECT_TRUE(std::filesystem::is_empty(demo));
+  // What a demo that was killed leaves is a demo's too.
+  write_text(demo + "/dataset.partial/mav0/cam0/data.csv", "#");
+  EXPECT_EQ(interrupted(demo_arguments, demo + "/dataset.partial/mav0/cam0/data"), 130);
+}
+
+TEST(CommandLine, NumbersOutOfRangeAreToldInWords) {
+  const Outcome outcome = run_tool("synth static --frames 0 --out out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.text.find("'0' is not a number above 0"), std::string::npos) << outcome.text;
+}
+
+TEST(CommandLine, MistypedSceneLeavesNoDemoFolderBehind) {
+  const TemporaryFolder folder;
+  const std::string demo = (folder.path() / "demo").string();
+  EXPECT_EQ(run_tool("demo --scene papr --out " + demo).exit_code, 2);
+  EXPECT_FALSE(std::filesystem::exists(demo));
 }
 
 TEST(CommandLine, AblateNamesTheStepsWhenAStepIsUnknown) {

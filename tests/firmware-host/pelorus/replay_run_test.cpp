@@ -105,6 +105,23 @@ TEST(RunReplay, FewDamagedPairsAreToldOfAndBridged) {
   EXPECT_EQ(summary.value().failure->place, "frame 4") << "the first one names the cause";
 }
 
+// Before the first readable pair nothing has to be bridged, and no gap in seq is left.
+TEST(RunReplay, DamagedPairsAtTheStartAreSkippedHoweverMany) {
+  const TemporaryFolder folder;
+  FakeSource source(12);
+  source.failing = 0;
+  source.failures = 6;
+  source.missing = 9;
+  const Result<ReplaySummary> summary = run_replay(source, options_for(folder));
+  ASSERT_TRUE(summary.ok());
+  EXPECT_EQ(summary.value().frames, 5U);
+  EXPECT_EQ(summary.value().unreadable, 6U);
+  EXPECT_EQ(summary.value().missing, 1U) << "the pair that was never recorded is still told of";
+  EXPECT_FALSE(summary.value().ended_early);
+  ASSERT_TRUE(summary.value().failure.has_value());
+  EXPECT_EQ(summary.value().failure->place, "frame 0");
+}
+
 TEST(RunReplay, FourDamagedPairsInARowEndTheRun) {
   const TemporaryFolder folder;
   FakeSource source(10);
@@ -113,6 +130,7 @@ TEST(RunReplay, FourDamagedPairsInARowEndTheRun) {
   const Result<ReplaySummary> summary = run_replay(source, options_for(folder));
   ASSERT_TRUE(summary.ok());
   EXPECT_TRUE(summary.value().failure.has_value());
+  EXPECT_TRUE(summary.value().ended_early);
   EXPECT_EQ(frames_written(folder), 4);
 }
 

@@ -130,13 +130,13 @@ TEST_F(Synth, FramesAndSeedOverrideTheScene) {
   EXPECT_NE(image(out_), image(other));
 }
 
-TEST_F(Synth, ReplacesADiveOfItsOwnWhenForcedAndNothingElse) {
+TEST_F(Synth, ReplacesADiveOfItsOwnWhenToldToAndNothingElse) {
   test::write_text(out_ / "precious.txt", "keep");
   const Result<int> refused = run_synth({scene_.string(), "--out", out_.string()});
   ASSERT_FALSE(refused.ok());
-  EXPECT_NE(refused.error().message().find("--force"), std::string::npos);
+  EXPECT_NE(refused.error().message().find("--overwrite"), std::string::npos);
   EXPECT_EQ(test::read_text(out_ / "precious.txt"), "keep");
-  const Result<int> forced = run_synth({scene_.string(), "--out", out_.string(), "--force"});
+  const Result<int> forced = run_synth({scene_.string(), "--out", out_.string(), "--overwrite"});
   ASSERT_FALSE(forced.ok());
   EXPECT_EQ(forced.error().code, ErrorCode::io);
   EXPECT_EQ(test::read_text(out_ / "precious.txt"), "keep");
@@ -144,7 +144,8 @@ TEST_F(Synth, ReplacesADiveOfItsOwnWhenForcedAndNothingElse) {
   const fs::path dive = folder_.path() / "dive_before";
   ASSERT_TRUE(run_synth({scene_.string(), "--out", dive.string()}).ok());
   EXPECT_FALSE(run_synth({scene_.string(), "--out", dive.string()}).ok());
-  EXPECT_TRUE(run_synth({scene_.string(), "--out", dive.string(), "--force"}).ok());
+  EXPECT_TRUE(run_synth({scene_.string(), "--out", dive.string(), "--overwrite"}).ok());
+  EXPECT_TRUE(run_synth({scene_.string(), "--out", dive.string(), "--force"}).ok()) << "the earlier name";
   EXPECT_TRUE(fs::exists(dive / "mav0/cam1/data.csv"));
 }
 
