@@ -39,6 +39,7 @@ struct CounterReport {
   std::uint64_t results_dropped = 0;
   std::uint64_t camera_timeouts = 0;
   std::uint64_t frozen_spells = 0;
+  std::uint64_t steps_shed = 0;
   std::uint64_t time_jumps = 0;
   std::uint64_t losses_of_track = 0;
   std::uint64_t lcm_errors = 0;

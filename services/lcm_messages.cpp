@@ -170,6 +170,7 @@ vis_health_t health_message(const HealthReport& report) {
   m.results_dropped = count(c.results_dropped);
   m.camera_timeouts = count(c.camera_timeouts);
   m.frozen_spells = count(c.frozen_spells);
+  m.steps_shed = count(c.steps_shed);
   m.time_jumps = count(c.time_jumps);
   m.losses_of_track = count(c.losses_of_track);
   m.lcm_errors = count(c.lcm_errors);

@@ -33,6 +33,7 @@ struct MountingConfig {
 // What the program asks of the operating system.
 struct ProcessConfig {
   bool realtime = true;     // scheduling class of capture and vision; refused: goes on without
+  bool pin = true;          // vision and its helper each on a processor of its own, the last ones
   bool lock_memory = true;  // no page of the program is swapped out; refused: goes on without
 };
 

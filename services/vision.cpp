@@ -19,7 +19,7 @@ Vision::Vision(const VisionParts& parts, const PipelineConfig& pipeline, const C
       timing_(timing),
       frame_timeout_(from_ms(watch.frame_timeout_ms)),
       watch_(watch),
-      pipeline_(std::make_unique<Pipeline>(pipeline, parts.rectifier.rig())),
+      pipeline_(std::make_unique<Pipeline>(pipeline, parts.rectifier.rig(), parts.workers)),
       thread_([this, prepare = std::move(on_thread_start)](const std::stop_token& stop) {
         if (prepare) prepare();
         run(stop);
@@ -33,6 +33,7 @@ VisionStatus Vision::status() const {
   status.missing_spells = missing_spells_.value();
   status.frozen_spells = frozen_spells_.value();
   status.time_jumps = time_jumps_.value();
+  status.steps_shed = steps_shed_.value();
   status.mean_grey = mean_grey_.load(std::memory_order_relaxed);
   status.contrast_grey = contrast_grey_.load(std::memory_order_relaxed);
   status.exposure_ms = exposure_ms_.load(std::memory_order_relaxed);
@@ -58,7 +59,8 @@ void Vision::obey() {
   const std::uint32_t wanted = parts_.control.resets.load(std::memory_order_relaxed);
   if (wanted == resets_obeyed_) return;
   resets_obeyed_ = wanted;
-  pipeline_ = std::make_unique<Pipeline>(config_, parts_.rectifier.rig());
+  pipeline_.reset();  // lets go of the workers
+  pipeline_ = std::make_unique<Pipeline>(config_, parts_.rectifier.rig(), parts_.workers);
   reset_base_ = last_reset_counter_ + 1;
   id_base_ = highest_id_;
   stepped_ = false;
@@ -127,7 +129,11 @@ void Vision::step(const StereoPair& pair, Timestamp capture_time, Publication& p
     frame.right = right_.view();
   }
   FrameResult& result = publication.result;
-  result = pipeline_->step(frame);
+  const Timestamp before = parts_.clock.now();
+  const Shed shed = shedding_.choose(capture_time + from_ms(timing_.latency_ms) - before);
+  result = pipeline_->step(frame, shed);
+  shedding_.learn(shed, result.report.points_started > 0, parts_.clock.now() - before);
+  if (shed != Shed::nothing) steps_shed_.add();
   publication.step = stepped_ ? capture_time - last_stepped_ : Duration{};
   stepped_ = true;
   last_stepped_ = capture_time;

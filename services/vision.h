@@ -16,6 +16,7 @@
 #include "drivers/capture_clock.h"
 #include "drivers/stereo_sync.h"
 #include "services/capture_watch.h"
+#include "services/load_shedding.h"
 #include "services/preview.h"
 #include "services/recorder.h"
 #include "services/result_ring.h"
@@ -36,6 +37,7 @@ struct VisionStatus {
   std::uint64_t missing_spells = 0;  // times without pictures
   std::uint64_t frozen_spells = 0;
   std::uint64_t time_jumps = 0;
+  std::uint64_t steps_shed = 0;  // that left out optional work for lack of time
   double mean_grey = 0;
   double contrast_grey = 0;
   double exposure_ms = 0;  // 0 = unknown
@@ -50,6 +52,7 @@ struct VisionParts {
   const CaptureClock& clock;
   Preview* preview = nullptr;    // may be absent
   Recorder* recorder = nullptr;  // may be absent
+  PipelineWorkers workers = {};  // absent ones: the vision thread does their work
 };
 
 class Vision {
@@ -74,6 +77,7 @@ class Vision {
   Duration frame_timeout_;
   CaptureWatch watch_;
   std::unique_ptr<Pipeline> pipeline_;
+  LoadShedding shedding_;
   Image left_;  // rectified
   Image right_;
 
@@ -92,7 +96,7 @@ class Vision {
   std::int32_t highest_id_ = 0;
   int last_reset_counter_ = 0;
 
-  Counter turns_, pairs_, pairs_missed_, missing_spells_, frozen_spells_, time_jumps_;
+  Counter turns_, pairs_, pairs_missed_, missing_spells_, frozen_spells_, time_jumps_, steps_shed_;
   std::atomic<double> mean_grey_{0}, contrast_grey_{0}, exposure_ms_{0};
   std::jthread thread_;  // last: everything above is ready when it starts
 };

@@ -30,7 +30,7 @@ void FrontEnd::refine_by_reference() {
       images_.is_reference[slot] = false;
       continue;
     }
-    klt_.track(images_.left[slot], images_.current(), work_tasks_, KltSearch::plane, 0);
+    track(work_tasks_, images_.left[slot], images_.current(), KltSearch::plane, 0);
     for (std::size_t w = 0; w < work_tasks_.size(); ++w) {
       KltTask& step = left_tasks_[work_of_[w]];
       const KltTask& refined = work_tasks_[w];

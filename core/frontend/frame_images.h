@@ -17,7 +17,6 @@ struct FrameImages {
   std::vector<ImagePyramid> left;  // slots: current, previous and the reference images
   std::vector<bool> is_reference;
   ImagePyramid right;
-  ImageView left_view;  // of the caller, valid during the step
   int curr = -1;
   int prev = -1;
 

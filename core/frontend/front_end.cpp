@@ -24,14 +24,10 @@ bool inside(const StereoRig& rig, double u, double v) {
 
 }  // namespace
 
-void FrontEnd::detect() {
-  if (!detected_) detected_points_ = surf_.detect(images_.left_view);
-  detected_ = true;
-}
-
-FrontEnd::FrontEnd(const FrontEndConfig& config, const StereoRig& rig)
+FrontEnd::FrontEnd(const FrontEndConfig& config, const StereoRig& rig, const FrontEndWorkers& workers)
     : config_(config),
       rig_(rig),
+      workers_(workers),
       klt_(config.klt),
       stereo_(config.stereo, klt_),
       surf_(config.surf, rig.width, rig.height),
@@ -58,8 +54,9 @@ FrontEnd::FrontEnd(const FrontEndConfig& config, const StereoRig& rig)
 
 Track& FrontEnd::track_of_pair(PointIndex pair) { return tracks_[track_of_pair_[static_cast<std::size_t>(pair)]]; }
 
-PointPairs FrontEnd::run(const StereoFrame& frame, std::span<const BodyPrediction> predictions) {
+PointPairs FrontEnd::run(const StereoFrame& frame, std::span<const BodyPrediction> predictions, bool may_refill) {
   counts_ = {};
+  may_refill_ = may_refill;
   take_images(frame);
   if (frames_++ == 0) return {};
   carry_left(predictions);
@@ -73,13 +70,19 @@ PointPairs FrontEnd::run(const StereoFrame& frame, std::span<const BodyPredictio
 }
 
 void FrontEnd::take_images(const StereoFrame& frame) {
+  frame_ = frame;
+  detected_ = false;
+  ++frames_since_refill_;
   images_.prev = images_.curr;
   images_.curr = free_slot();
+  workers_.tracking.start(work_of<&FrontEnd::build_right>(*this));
+  // Detection runs beside the step when it is certain to be wanted at its end: points only get fewer until then.
+  if (may_refill_ && wants_refill()) detect();
   images_.left[static_cast<std::size_t>(images_.curr)].build(frame.left, config_.klt.levels);
-  images_.right.build(frame.right, config_.klt.levels);
-  images_.left_view = frame.left;
-  detected_ = false;
+  workers_.tracking.wait();
 }
+
+void FrontEnd::build_right() { images_.right.build(frame_.right, config_.klt.levels); }
 
 void FrontEnd::carry_left(std::span<const BodyPrediction> predictions) {
   left_tasks_.clear();
@@ -93,7 +96,7 @@ void FrontEnd::carry_left(std::span<const BodyPrediction> predictions) {
     task.warp = step_warp(rig_, H_curr_prev, track.latest.p_cam, track.disparity_gradient);
     left_tasks_.push_back(task);
   }
-  klt_.track(images_.previous(), images_.current(), left_tasks_, KltSearch::plane, kPredictedStartLevel, true);
+  track(left_tasks_, images_.previous(), images_.current(), KltSearch::plane, kPredictedStartLevel, true);
 }
 
 // Points that the prediction led astray get a second search from where they were, from the coarsest level.
@@ -108,7 +111,7 @@ void FrontEnd::retry_lost() {
     work_of_.push_back(t);
   }
   if (work_tasks_.empty()) return;
-  klt_.track(images_.previous(), images_.current(), work_tasks_, KltSearch::plane, config_.klt.levels - 1);
+  track(work_tasks_, images_.previous(), images_.current(), KltSearch::plane, config_.klt.levels - 1);
   for (std::size_t w = 0; w < work_tasks_.size(); ++w) {
     if (work_tasks_[w].outcome != KltOutcome::ok) continue;
     left_tasks_[work_of_[w]] = work_tasks_[w];
@@ -120,6 +123,7 @@ void FrontEnd::retry_lost() {
 // step 1); KLT then places them to sub-pixel accuracy, so that one tracker's error model holds for all points.
 void FrontEnd::bridge_by_surf() {
   detect();
+  workers_.surf.wait();
   const auto strongest = detected_points_.first(
       std::min(detected_points_.size(), static_cast<std::size_t>(std::max(0, config_.bridge_points))));
   descriptors_.resize(strongest.size());
@@ -146,7 +150,7 @@ void FrontEnd::bridge_by_surf() {
     work_tasks_.push_back(task_between(lost_points_[lost].u_px, lost_points_[lost].v_px, found.u_px, found.v_px));
     work_of_[kept++] = work_of_[lost];
   }
-  klt_.track(images_.previous(), images_.current(), work_tasks_, KltSearch::plane, 1);
+  track(work_tasks_, images_.previous(), images_.current(), KltSearch::plane, 1);
   for (std::size_t w = 0; w < work_tasks_.size(); ++w) {
     if (work_tasks_[w].outcome != KltOutcome::ok) continue;
     left_tasks_[work_of_[w]] = work_tasks_[w];
@@ -165,7 +169,7 @@ void FrontEnd::check_backward() {
     work_tasks_.push_back(back);
     work_of_.push_back(t);
   }
-  klt_.track(images_.current(), images_.previous(), work_tasks_, KltSearch::plane, 0);
+  track(work_tasks_, images_.current(), images_.previous(), KltSearch::plane, 0);
   for (std::size_t w = 0; w < work_tasks_.size(); ++w) {
     KltTask& step = left_tasks_[work_of_[w]];
     const double miss_px = std::hypot(static_cast<double>(work_tasks_[w].u_to_px - step.u_from_px),
@@ -193,7 +197,7 @@ void FrontEnd::carry_right(std::span<const BodyPrediction> predictions) {
     work_tasks_.push_back(task);
     work_of_.push_back(t);
   }
-  klt_.track(images_.current(), images_.right, work_tasks_, KltSearch::row, 1, true);
+  track(work_tasks_, images_.current(), images_.right, KltSearch::row, 1, true);
   for (std::size_t w = 0; w < work_tasks_.size(); ++w) {
     const KltTask& across = work_tasks_[w];
     KltTask& step = left_tasks_[work_of_[w]];

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "core/base/side_worker.h"
 #include "core/frontend/frame_images.h"
 #include "core/frontend/klt.h"
 #include "core/frontend/stereo_match.h"
@@ -66,9 +67,18 @@ struct RefillArea {
   return task;
 }
 
+// Threads lent to the front end: `tracking` takes half of each search, `surf` detects while the step goes on.
+struct FrontEndWorkers {
+  SideWorker& tracking;
+  SideWorker& surf;
+};
+
 class FrontEnd {
  public:
-  FrontEnd(const FrontEndConfig& config, const StereoRig& rig);
+  FrontEnd(const FrontEndConfig& config, const StereoRig& rig, const FrontEndWorkers& workers);
+  ~FrontEnd() { workers_.surf.wait(); }
+  FrontEnd(const FrontEnd&) = delete;
+  FrontEnd& operator=(const FrontEnd&) = delete;
 
   struct Counts {
     int tracked = 0;
@@ -78,12 +88,15 @@ class FrontEnd {
   };
 
   // Carries all points into `frame`. predictions[0] must be the world's; unknown points start from it.
-  // The pairs are valid until the next call; pair i belongs to track_of_pair(i).
-  [[nodiscard]] PointPairs run(const StereoFrame& frame, std::span<const BodyPrediction> predictions);
+  // The pairs are valid until the next call; pair i belongs to track_of_pair(i). `may_refill` off: detection is spared
+  // unless points cannot be found otherwise. refill() must follow, before the frame's images go.
+  [[nodiscard]] PointPairs run(const StereoFrame& frame, std::span<const BodyPrediction> predictions,
+                               bool may_refill = true);
   // What the step found: the body of each pair (kNoBody = unexplained) and its measured motion, used to carry the
   // anchors' warps. `motions` holds the step's H_curr_prev of every body named.
   void settle(std::span<const BodyId> body_of_pair, std::span<const BodyPrediction> motions);
-  // Starts points on the current pair where there are too few; they become pairs with the next frame.
+  // Starts points on the current pair where there are too few; they become pairs with the next frame. `force`: even if
+  // run() was told to spare it.
   void refill(std::span<const RefillArea> areas, bool force);
   // Forgets tracks for good (they proved to be outliers).
   void drop(std::span<const TrackId> tracks);
@@ -98,6 +111,14 @@ class FrontEnd {
 
  private:
   void take_images(const StereoFrame& frame);
+  void build_right();
+  // KLT on this thread and the tracking worker, half of the tasks each.
+  void track(std::span<KltTask> tasks, const ImagePyramid& from, const ImagePyramid& to, KltSearch search,
+             int coarsest_level, bool predicted = false);
+  void track_share();
+  void match_share();
+  void detect_now();
+  void describe_starts();
   void carry_left(std::span<const BodyPrediction> predictions);
   void retry_lost();
   void detect();
@@ -109,12 +130,13 @@ class FrontEnd {
   void measure_slopes();
   void renew_references();
   [[nodiscard]] int free_slot();
-  [[nodiscard]] bool wants_refill(bool force) const;
+  [[nodiscard]] bool wants_refill() const;
   void choose_starts(std::span<const RefillArea> areas);
   void start_points();
 
   FrontEndConfig config_;
   StereoRig rig_;
+  FrontEndWorkers workers_;
   Klt klt_;
   StereoMatcher stereo_;
   Surf surf_;
@@ -145,7 +167,19 @@ class FrontEnd {
   int frames_ = 0;
   int frames_since_refill_ = 0;
   int frames_since_reference_ = 0;
-  bool detected_ = false;  // the detector has seen the current left image
+  bool may_refill_ = true;
+  bool detected_ = false;  // the detector was given the current left image, and may still be at it
+  StereoFrame frame_;      // of the caller, valid during the step
+  struct Share {           // what the tracking worker works on
+    const ImagePyramid* from = nullptr;
+    const ImagePyramid* to = nullptr;
+    std::span<KltTask> tasks;
+    KltSearch search = KltSearch::plane;
+    int coarsest_level = 0;
+    bool predicted = false;
+    std::span<StereoTask> stereo_tasks;
+  };
+  Share share_;
   Counts counts_;
 };
 

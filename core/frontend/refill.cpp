@@ -24,19 +24,20 @@ bool inside_area(const RefillArea& area, const SurfPoint& point) {
 
 }  // namespace
 
-bool FrontEnd::wants_refill(bool force) const {
-  if (force || frames_ <= 1) return true;
-  return static_cast<double>(tracks_.size()) < config_.refill_below * config_.max_points ||
+bool FrontEnd::wants_refill() const {
+  return frames_ <= 1 || static_cast<double>(tracks_.size()) < config_.refill_below * config_.max_points ||
          frames_since_refill_ >= config_.refill_every;
 }
 
 void FrontEnd::refill(std::span<const RefillArea> areas, bool force) {
-  ++frames_since_refill_;
-  if (!wants_refill(force)) return;
-  frames_since_refill_ = 0;
-  detect();
-  choose_starts(areas);
-  start_points();
+  if (force || (may_refill_ && wants_refill())) {
+    frames_since_refill_ = 0;
+    detect();
+    workers_.surf.wait();
+    choose_starts(areas);
+    start_points();
+  }
+  workers_.surf.wait();  // the image goes with the step
 }
 
 // Strongest points first, where a cell of the view has fewer than its share; bodies get more and denser points.
@@ -97,9 +98,14 @@ void FrontEnd::start_points() {
     task.v_px = point.v_px;
     stereo_tasks_.push_back(task);
   }
-  stereo_.match(images_.current(), images_.right, stereo_tasks_);
   descriptors_.resize(starts_.size());
-  surf_.describe(starts_, descriptors_);
+  workers_.surf.start(work_of<&FrontEnd::describe_starts>(*this));
+  const std::size_t half = stereo_tasks_.size() / 2;
+  share_.stereo_tasks = std::span(stereo_tasks_).first(half);
+  workers_.tracking.start(work_of<&FrontEnd::match_share>(*this));
+  stereo_.match(images_.current(), images_.right, std::span(stereo_tasks_).subspan(half));
+  workers_.tracking.wait();
+  workers_.surf.wait();
   for (std::size_t s = 0; s < starts_.size(); ++s) {
     const StereoTask& match = stereo_tasks_[s];
     const double disparity_px = static_cast<double>(match.u_left_px - match.u_right_px);

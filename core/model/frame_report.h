@@ -48,6 +48,7 @@ struct FrameReport {
   std::int32_t births_refused = 0;  // bodies found while the table of kMaxObjects was full
   std::int32_t groups = 0;
   std::int32_t frames_missed = 0;  // gap in seq before this frame, bridged
+  std::int32_t shed = 0;           // optional work left out for lack of time: 0 none (pipeline.h, Shed)
   double sigma_px = 0;             // learned pixel deviation
 
   StageReport& operator[](Stage stage) { return stages[static_cast<std::size_t>(stage)]; }

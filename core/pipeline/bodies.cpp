@@ -7,18 +7,27 @@
 #include "core/pipeline/state.h"
 
 namespace pelorus {
+namespace {
+
+PipelineWorkers with_stand_in(PipelineWorkers workers, SideWorker& stand_in) {
+  for (SideWorker** worker : {&workers.tracking, &workers.surf, &workers.refine}) {
+    if (*worker == nullptr) *worker = &stand_in;
+  }
+  return workers;
+}
+
+}  // namespace
 
 Pipeline::State::State(const PipelineConfig& c, const StereoRig& r, const PipelineWorkers& w)
     : config(c),
       rig(r),
-      workers(w),
-      front_end(c.front_end, r),
+      workers(with_stand_in(w, inline_worker)),
+      front_end(c.front_end, r, {*workers.tracking, *workers.surf}),
       grouping(c.grouping, c.seed_points, c.two_frame_ba, c.front_end.max_points),
       moving_grouping(c.grouping, c.seed_points, c.two_frame_ba, c.front_end.max_points),
       two_frame_ba(c.two_frame_ba, c.front_end.max_points),
       net(c.front_end.max_points),
-      ego_window(c.static_window, r, c.front_end.max_points, c.ego_motion.point_gate_chi2,
-                 w.refine != nullptr ? *w.refine : inline_worker),
+      ego_window(c.static_window, r, c.front_end.max_points, c.ego_motion.point_gate_chi2, *workers.refine),
       registry(c.registry, c.membership, c.identity, c.merge, c.reidentification, c.object_window, c.two_frame_ba,
                c.front_end.max_points),
       sigma_px(c.ego_motion.start_sigma_px) {
@@ -40,12 +49,15 @@ Pipeline::State::State(const PipelineConfig& c, const StereoRig& r, const Pipeli
   views.reserve(points);
 }
 
+RegistrySteps Pipeline::State::registry_steps() const {
+  const MethodSteps& on = config.steps;
+  return {on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window && shed < Shed::object_window,
+          on.reidentification};
+}
+
 void Pipeline::State::follow_bodies() {
   if (!started || !ego_found()) return;
-  const MethodSteps& on = config.steps;
-  const RegistrySteps steps{on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window,
-                            on.reidentification};
-  registry.claim(rig, pairs, roles, chi2_static, world, steps, owner);
+  registry.claim(rig, pairs, roles, chi2_static, world, registry_steps(), owner);
 }
 
 // The moving points that no known body explains are divided among new groups (6.1 step 7).
@@ -58,17 +70,12 @@ void Pipeline::State::find_new_bodies() {
   const MethodSteps& on = config.steps;
   const Grouping::Options options{on.rigidity_grouping, on.motion_reassignment};
   const Partition& groups = moving_grouping.run(rig, pairs, open, {}, world.seed + 1, options);
-  const RegistrySteps steps{on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window,
-                            on.reidentification};
-  registry.adopt(rig, pairs, roles, groups, track_of_pair, world, steps, owner);
+  registry.adopt(rig, pairs, roles, groups, track_of_pair, world, registry_steps(), owner);
 }
 
 void Pipeline::State::settle_bodies() {
   if (!started || !ego_found()) return;
-  const MethodSteps& on = config.steps;
-  const RegistrySteps steps{on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window,
-                            on.reidentification};
-  registry.settle(rig, pairs, roles, chi2_static, track_of_pair, world, steps, owner);
+  registry.settle(rig, pairs, roles, chi2_static, track_of_pair, world, registry_steps(), owner);
   result.report[Stage::objects].outcome = StageOutcome::ok;
   result.report.births_refused = registry.births_refused();
 }

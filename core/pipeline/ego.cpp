@@ -9,8 +9,10 @@
 
 namespace pelorus {
 
-void Pipeline::State::begin(const StereoFrame& frame) {
+void Pipeline::State::begin(const StereoFrame& frame, Shed what_to_shed) {
+  shed = what_to_shed;
   result = FrameResult{};
+  result.report.shed = static_cast<std::int32_t>(shed);
   result.seq = frame.seq;
   result.capture_time = frame.capture_time;
   result.reset_counter = reset_counter;
@@ -39,7 +41,7 @@ void Pipeline::State::begin(const StereoFrame& frame) {
 
 void Pipeline::State::match_points(const StereoFrame& frame) {
   front_end.set_sigma(sigma_px);
-  pairs = front_end.run(frame, predictions);
+  pairs = front_end.run(frame, predictions, shed < Shed::refill);
   track_of_pair.clear();
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     track_of_pair.push_back(&front_end.track_of_pair(static_cast<PointIndex>(i)));
@@ -236,7 +238,8 @@ void Pipeline::State::draw_towards_window() {
 
 // The frame goes to the window, whose answer comes with a later one.
 void Pipeline::State::give_to_window() {
-  if (!started || !ego_found() || !config.steps.static_window || !ego_window.idle()) return;
+  if (!started || !ego_found() || !config.steps.static_window) return;
+  if (shed >= Shed::refinement || !ego_window.idle()) return;
   observations.clear();
   before.clear();
   for (const PointIndex i : fixed) {

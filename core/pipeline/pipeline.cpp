@@ -10,9 +10,9 @@ Pipeline::Pipeline(const PipelineConfig& config, const StereoRig& rig, const Pip
 Pipeline::~Pipeline() = default;
 
 // The computation procedure of one step (paper 6.1, 6.2 and Fig. 6).
-const FrameResult& Pipeline::step(const StereoFrame& frame) {
+const FrameResult& Pipeline::step(const StereoFrame& frame, Shed shed) {
   State& s = *state_;
-  s.begin(frame);
+  s.begin(frame, shed);
   FrameReport& report = s.result.report;
   const StageTimer step_timer(report.step_microseconds);
   {

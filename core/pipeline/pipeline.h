@@ -13,10 +13,15 @@ namespace pelorus {
 
 // Threads lent to the step; absent ones: the step does the work itself, with the same result. Borrowed.
 struct PipelineWorkers {
+  SideWorker* tracking = nullptr;
+  SideWorker* surf = nullptr;
   SideWorker* refine = nullptr;
   // Stepped, the window's answer is waited for, so that the same input gives the same bytes; live it never is.
   bool wait_for_refine = true;
 };
+
+// What a step leaves out when its time is short; each includes those before it.
+enum class Shed : std::uint8_t { nothing, refill, refinement, object_window };
 
 class Pipeline {
  public:
@@ -24,7 +29,7 @@ class Pipeline {
   ~Pipeline();
   // The frame's images must be rectified and of the rig's size, its seq greater than the previous one.
   // The result is valid until the next call.
-  const FrameResult& step(const StereoFrame& frame);
+  const FrameResult& step(const StereoFrame& frame, Shed shed = Shed::nothing);
   // The points of the last step, for pictures and reports.
   [[nodiscard]] std::span<const PointView> points() const;
 

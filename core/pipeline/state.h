@@ -11,7 +11,7 @@ namespace pelorus {
 struct Pipeline::State {
   State(const PipelineConfig& config, const StereoRig& rig, const PipelineWorkers& workers);
 
-  void begin(const StereoFrame& frame);
+  void begin(const StereoFrame& frame, Shed what_to_shed);
   void match_points(const StereoFrame& frame);  // 5.1: the unified matched set, two clouds
   void measure_noise();                         // until the ego motion is found for the first time
   void partition_coarsely();                    // 5.1, 6.1 steps 2-3
@@ -31,6 +31,7 @@ struct Pipeline::State {
   [[nodiscard]] bool ego_found() const { return ego_outcome == StageOutcome::ok; }
   [[nodiscard]] MotionFit fit_motion(std::span<const PointIndex> members, const Rigid3& H_start);
   void collect_fixed();
+  [[nodiscard]] RegistrySteps registry_steps() const;
   void learn_sigma(double rate);
   void drop_unexplained();
   void choose_refill_areas();
@@ -42,17 +43,18 @@ struct Pipeline::State {
 
   PipelineConfig config;
   StereoRig rig;
-  PipelineWorkers workers;
+  InlineWorker inline_worker;
+  PipelineWorkers workers;  // absent ones replaced by the inline one
   FrontEnd front_end;
   Grouping grouping;
   Grouping moving_grouping;
   TwoFrameBa two_frame_ba;
   StaticNet net;
-  InlineWorker inline_worker;
   EgoWindow ego_window;
   Registry registry;
 
   // Of the present step.
+  Shed shed = Shed::nothing;
   PointPairs pairs;
   std::vector<const Track*> track_of_pair;
   const Partition* coarse = nullptr;  // of `grouping`

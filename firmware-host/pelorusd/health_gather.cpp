@@ -21,6 +21,7 @@ void gather_capture(const std::vector<CaptureStatus>& cameras, const SyncStatist
 void gather_vision(const VisionStatus& vision, HealthReport& report) {
   report.counters.camera_timeouts = vision.missing_spells;
   report.counters.frozen_spells = vision.frozen_spells;
+  report.counters.steps_shed = vision.steps_shed;
   report.counters.time_jumps += vision.time_jumps;
   report.picture.mean_grey = vision.mean_grey;
   report.picture.contrast_grey = vision.contrast_grey;

@@ -48,8 +48,8 @@ bool ServiceThreads::ask_the_system(LogSink& log) const {
 }
 
 void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
-  const auto prepared = [realtime](const char* name, ThreadClass wanted) {
-    return [=] { (void)set_thread(name, realtime ? wanted : ThreadClass::normal); };
+  const auto prepared = [realtime](const char* name, ThreadClass wanted, int processor = kAnyProcessor) {
+    return [=] { (void)set_thread(name, realtime ? wanted : ThreadClass::normal, processor); };
   };
   if (config.lcm.enabled) {
     lcm = std::make_unique<LcmPublisher>(config.lcm, T_body_cam);
@@ -74,9 +74,15 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
         return write_calibration(head->calibration(), CalibrationFormat::euroc, folder);
       },
       [] { (void)set_thread("record", ThreadClass::background); });
-  const VisionParts parts{head->sync(), *rectifier, desk.results, control, clock, preview.get(), recorder.get()};
-  vision = std::make_unique<Vision>(parts, config.pipeline, config.capture, config.timing,
-                                    prepared("vision", ThreadClass::fifo_middle));
+  const bool pinned = realtime && config.process.pin;
+  workers.reset(new PipelineThreads{
+      SideThread(prepared("klt", ThreadClass::fifo_middle, pinned ? processor_from_last(1) : kAnyProcessor)),
+      SideThread(prepared("surf", ThreadClass::fifo_low)), SideThread(prepared("refine", ThreadClass::normal))});
+  const VisionParts parts{head->sync(), *rectifier,    desk.results,   control,
+                          clock,        preview.get(), recorder.get(), workers->workers(false)};
+  vision = std::make_unique<Vision>(
+      parts, config.pipeline, config.capture, config.timing,
+      prepared("vision", ThreadClass::fifo_middle, pinned ? processor_from_last(0) : kAnyProcessor));
   // A device's thread copies; that of a recording decodes or renders, which must not keep others waiting.
   head->start(prepared("capture", head->is_live() ? ThreadClass::fifo_high : ThreadClass::normal));
   if (config.lcm.enabled && config.lcm.commands) {
@@ -89,6 +95,7 @@ void ServiceThreads::stop() {
   if (head) head->stop();
   commands.reset();
   vision.reset();
+  workers.reset();
   recorder.reset();
   preview.reset();
   publishing.reset();

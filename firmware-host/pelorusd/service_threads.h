@@ -14,6 +14,7 @@
 #include "services/command_listener.h"
 #include "services/lcm_publisher.h"
 #include "services/publish_thread.h"
+#include "services/side_thread.h"
 #include "services/vision.h"
 
 namespace pelorus {
@@ -38,6 +39,7 @@ struct ServiceThreads {
   std::unique_ptr<PublishThread> publishing;
   std::unique_ptr<Preview> preview;
   std::unique_ptr<Recorder> recorder;
+  std::unique_ptr<PipelineThreads> workers;
   std::unique_ptr<Vision> vision;  // absent once the recording is at its end
   std::unique_ptr<CommandListener> commands;
 

@@ -15,6 +15,7 @@ namespace {
 constexpr int kHighPriority = 40;
 constexpr int kReleasePriority = 35;
 constexpr int kMiddlePriority = 30;
+constexpr int kLowPriority = 20;
 constexpr int kBackgroundNice = 10;
 constexpr std::size_t kTouchedStack = 512 * 1024;
 
@@ -38,8 +39,27 @@ std::string lock_memory() {
   return std::strerror(errno);
 }
 
-std::string set_thread(const char* name, ThreadClass wanted) {
+int processor_from_last(int n) {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) == 0) return kAnyProcessor;
+  int passed = n % CPU_COUNT(&allowed);
+  for (int cpu = CPU_SETSIZE - 1; cpu >= 0; --cpu) {
+    if (CPU_ISSET(cpu, &allowed) && passed-- == 0) return cpu;
+  }
+  return kAnyProcessor;
+}
+
+std::string set_thread(const char* name, ThreadClass wanted, int processor) {
   ::pthread_setname_np(::pthread_self(), name);
+  if (processor != kAnyProcessor) {
+    cpu_set_t one;
+    CPU_ZERO(&one);
+    CPU_SET(processor, &one);
+    if (const int error = ::pthread_setaffinity_np(::pthread_self(), sizeof one, &one); error != 0) {
+      return std::strerror(error);
+    }
+  }
   if (wanted == ThreadClass::normal) return "";
   if (wanted == ThreadClass::background) {
     // On Linux the nice value is the thread's own.
@@ -49,7 +69,8 @@ std::string set_thread(const char* name, ThreadClass wanted) {
   sched_param parameters{};
   parameters.sched_priority = wanted == ThreadClass::fifo_high      ? kHighPriority
                               : wanted == ThreadClass::fifo_release ? kReleasePriority
-                                                                    : kMiddlePriority;
+                              : wanted == ThreadClass::fifo_middle  ? kMiddlePriority
+                                                                    : kLowPriority;
   const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
   return error == 0 ? "" : std::strerror(error);
 }

@@ -13,13 +13,19 @@ namespace pelorus {
 enum class ThreadClass {
   fifo_high,     // capture: a picture waits for nobody
   fifo_release,  // publishing: little work, at an exact moment, also while vision computes
-  fifo_middle,   // vision
+  fifo_middle,   // vision, and what shares its work
+  fifo_low,      // detection, beside vision
   normal,
   background  // previews, recording
 };
 
-// Names the calling thread (15 characters) and sets its class. Empty when granted, else why not.
-[[nodiscard]] std::string set_thread(const char* name, ThreadClass wanted);
+inline constexpr int kAnyProcessor = -1;
+// The n-th processor from the last of those this process may use; wraps around.
+[[nodiscard]] int processor_from_last(int n);
+
+// Names the calling thread (15 characters), sets its class and binds it to a processor. Empty when granted, else why
+// not.
+[[nodiscard]] std::string set_thread(const char* name, ThreadClass wanted, int processor = kAnyProcessor);
 
 // Whether the process may use real-time scheduling at all; empty, or why not.
 [[nodiscard]] std::string realtime_refusal();

@@ -68,6 +68,7 @@ void list(FieldList& f, MountingConfig& c) {
 void list(FieldList& f, ProcessConfig& c) {
   f.section("process");
   f.add("realtime", c.realtime);
+  f.add("pin", c.pin);
   f.add("lock_memory", c.lock_memory);
 }
 

@@ -44,6 +44,14 @@ TEST(Determinism, SameDiveGivesTheSameBytesOnOneProcessorAndOnAll) {
   expect_same_bytes(all, one);
 }
 
+TEST(Determinism, SharingAStepAmongThreadsChangesNoByte) {
+  const test::TemporaryFolder shared;
+  const test::TemporaryFolder alone;
+  test::replay_small_dive(shared, 1, true);
+  test::replay_small_dive(alone, 1, false);
+  expect_same_bytes(shared, alone);
+}
+
 TEST(Determinism, SameDiveTwiceGivesTheSameBytes) {
   const test::TemporaryFolder once;
   const test::TemporaryFolder again;

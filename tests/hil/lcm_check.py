@@ -13,7 +13,7 @@ STATES = ["INIT", "TRACKING", "DEGRADED", "LOST", "CAMERA_FAULT", "CALIBRATION_F
 EVENT = struct.Struct(">Iqqii")  # sync word, number, time of reception [us], lengths of channel and data
 ODOM = struct.Struct(">QqqdBqb")  # hash, utime, publish_utime, latency_ms, deadline_missed, seq, state
 HEALTH_COUNTERS = ("pairs_captured results_published deadline_misses dropped_in_source dropped_ring_full "
-                   "dropped_superseded dropped_unpaired results_dropped camera_timeouts frozen_spells time_jumps "
+                   "dropped_superseded dropped_unpaired results_dropped camera_timeouts frozen_spells steps_shed time_jumps "
                    "losses_of_track lcm_errors lcm_reconnects previews_skipped").split()
 
 

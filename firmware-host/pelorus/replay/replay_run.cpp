@@ -11,6 +11,7 @@
 #include "core/pipeline/pipeline.h"
 #include "firmware-host/pelorus/results/result_files.h"
 #include "services/overlay.h"
+#include "services/side_thread.h"
 
 namespace pelorus {
 namespace {
@@ -192,7 +193,10 @@ Result<Ok> make_overlay_folder(const ReplayOptions& options) {
 // Steps until the data end; an Error is what ended it early.
 Result<Ok> run_frames(PairFeed& feed, const ReplayOptions& options, const Rectifier& rectifier, ResultWriter& writer,
                       SummaryCounter& counter, std::uint64_t total) {
-  Pipeline pipeline(options.pipeline, rectifier.rig());
+  std::optional<PipelineThreads> threads;
+  if (options.threads) threads.emplace();
+  Pipeline pipeline(options.pipeline, rectifier.rig(),
+                    threads ? threads->workers(!options.realtime) : PipelineWorkers{});
   Overlay overlay(rectifier.rig());
   RectifiedPair rectified(rectifier);
   SourcePair pair;

@@ -21,6 +21,7 @@ struct ReplayOptions {
   PipelineConfig pipeline;
   std::filesystem::path out_folder;        // made by prepare_output_folder
   std::uint64_t max_frames = 0;            // pairs taken from the source; 0 = all
+  bool threads = true;                     // share a step among threads; off: the same bytes, later
   bool realtime = false;                   // feed at the recorded times; the newest pair wins, the others are counted
   int overlay_every = 0;                   // annotated picture of every n-th frame; 0 = none
   std::function<void(const Error&)> warn;  // told of each pair that cannot be read and is bridged; may be empty

@@ -119,7 +119,8 @@ TEST_F(FrontEndHeap, TheFrontEndTakesNoneAfterWarmUpNotEvenWhenTheViewJumps) {
   FrontEndConfig config;
   config.max_points = 150;
   const StereoRig rig{kWidth, kHeight, 300.0, kWidth / 2.0, kHeight / 2.0, 0.1};
-  FrontEnd front_end(config, rig);
+  InlineWorker inline_worker;
+  FrontEnd front_end(config, rig, {inline_worker, inline_worker});
   const BodyPrediction still{kWorldBody, Rigid3::Identity()};
   std::vector<BodyId> bodies(1000, kWorldBody);
   int pairs = 0;

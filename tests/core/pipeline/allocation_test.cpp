@@ -1,5 +1,5 @@
-// No heap on the per-frame path (ARCHITECTURE, threads and latency): the C allocator itself is replaced in this
-// program, so that every library is counted. Not built under sanitizers, which replace it too.
+// No heap on the per-frame path (ARCHITECTURE, threads and latency), on no thread: the C allocator itself is replaced
+// in this program, so that every library is counted. Not built under sanitizers, which replace it too.
 
 #include <execinfo.h>
 #include <gtest/gtest.h>
@@ -8,6 +8,7 @@
 #include <atomic>
 
 #include "core/pipeline/pipeline.h"
+#include "services/side_thread.h"
 #include "tests/core/pipeline/board_world.h"
 
 extern "C" {
@@ -19,20 +20,21 @@ void* __libc_memalign(std::size_t alignment, std::size_t size);
 
 namespace {
 
-thread_local bool counting = false;
+std::atomic<bool> counting{false};  // in all threads
+thread_local bool noting = false;
 std::atomic<int> allocations{0};
 
 // Says where the first ones come from; backtrace_symbols_fd does not allocate once its library is loaded.
 void note() {
-  if (!counting) return;
-  counting = false;
+  if (!counting.load(std::memory_order_relaxed) || noting) return;
+  noting = true;
   if (++allocations <= 5) {
     void* frames[12];
     const int depth = backtrace(frames, 12);
     backtrace_symbols_fd(frames, depth, STDERR_FILENO);
     (void)!write(STDERR_FILENO, "--\n", 3);
   }
-  counting = true;
+  noting = false;
 }
 
 }  // namespace
@@ -82,7 +84,8 @@ TEST(Allocation, NoneInTwoHundredStepsWithABodyThatComesAndGoes) {
   std::vector<test::StereoImages> images;
   for (int frame = 0; frame < kRendered; ++frame) images.push_back(test::plane_with_board(frame, {}));
   const test::StereoImages grey = test::grey();
-  Pipeline pipeline({}, test::kBoardRig);
+  PipelineThreads threads;
+  Pipeline pipeline({}, test::kBoardRig, threads.workers(true));
   void* loaded[2];
   (void)backtrace(loaded, 2);
   int with_objects = 0;
