@@ -36,9 +36,14 @@ double hottest_degc() {
   return hottest;
 }
 
+// Of a folder that is yet to be made: where it will be.
 double free_gb(const std::string& folder) {
   struct statvfs facts {};
-  if (folder.empty() || ::statvfs(folder.c_str(), &facts) != 0) return kUnknown;
+  if (folder.empty()) return kUnknown;
+  std::error_code error;
+  std::filesystem::path place = std::filesystem::absolute(folder, error);
+  while (place.has_relative_path() && !std::filesystem::exists(place, error)) place = place.parent_path();
+  if (::statvfs(place.c_str(), &facts) != 0) return kUnknown;
   return static_cast<double>(facts.f_bavail) * static_cast<double>(facts.f_frsize) / 1e9;
 }
 

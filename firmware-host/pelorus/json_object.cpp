@@ -32,13 +32,14 @@ JsonObject& JsonObject::raw(const std::string& key, const std::string& json) {
   return *this;
 }
 
-JsonObject& JsonObject::number(const std::string& key, double value) {
-  if (!std::isfinite(value)) return raw(key, "null");
+std::string json_number(double value) {
+  if (!std::isfinite(value)) return "null";
   std::array<char, 40> text{};
   std::snprintf(text.data(), text.size(), "%.9g", value);
-  return raw(key, text.data());
+  return text.data();
 }
 
+JsonObject& JsonObject::number(const std::string& key, double value) { return raw(key, json_number(value)); }
 JsonObject& JsonObject::integer(const std::string& key, long long value) { return raw(key, std::to_string(value)); }
 JsonObject& JsonObject::flag(const std::string& key, bool value) { return raw(key, value ? "true" : "false"); }
 JsonObject& JsonObject::text(const std::string& key, const std::string& value) { return raw(key, quoted(value)); }

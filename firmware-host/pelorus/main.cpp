@@ -14,6 +14,9 @@
 #include "firmware-host/pelorus/eval/eval.h"
 #include "firmware-host/pelorus/replay/replay.h"
 #include "firmware-host/pelorus/synth/synth.h"
+#ifdef PELORUS_WITH_LCM
+#include "firmware-host/pelorus/top/top.h"
+#endif
 
 namespace {
 
@@ -30,6 +33,9 @@ int run_tool(int argc, char** argv) {
   verbs.push_back(pelorus::add_eval(app));
   verbs.push_back(pelorus::add_ablate(app));
   verbs.push_back(pelorus::add_synth(app));
+#ifdef PELORUS_WITH_LCM
+  verbs.push_back(pelorus::add_top(app));
+#endif
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -78,6 +78,7 @@ Result<std::unique_ptr<App>> App::create(const ServiceConfig& config, LogSink& l
   if (!service) return service.error();
   std::unique_ptr<App> app(new App(log));
   app->parts_->service = std::move(service.value());
+  app->parts_->host = HostFacts(config.recorder.folder);
   app->parts_->started = app->parts_->service->clock.now();
   return app;
 }

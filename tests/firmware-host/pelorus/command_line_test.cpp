@@ -43,7 +43,7 @@ std::string small_scene(const TemporaryFolder& folder, int frames) {
 }
 
 TEST(CommandLine, EveryVerbExplainsItself) {
-  for (const char* verb : {"replay", "eval", "ablate", "demo", "can dump", "can dbc", "can export", "doctor"}) {
+  for (const char* verb : {"replay", "eval", "ablate", "demo", "can dump", "can dbc", "can export", "doctor", "top"}) {
     const Outcome outcome = run_tool(std::string(verb) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_NE(outcome.text.find("Exit codes"), std::string::npos) << verb;
