@@ -31,6 +31,7 @@ struct Publication {
   StateReason reason = StateReason::none;
   bool has_picture = true;  // false: the result of a missing pair, made by the service at its time
   Duration step{};          // time spanned by T_curr_prev; 0 = there is no previous estimate
+  Timestamp ready;          // capture clock: when vision was done with it
   Timestamp release_due;    // capture clock: mid-exposure + declared latency
   Timestamp released;       // capture clock: when the publish thread let it go
   bool deadline_missed = false;

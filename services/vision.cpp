@@ -170,6 +170,7 @@ void Vision::tell_missing() {
 void Vision::post(Publication& publication, Timestamp release_due) {
   last_release_due_ = std::max(last_release_due_, release_due);
   publication.release_due = last_release_due_;
+  publication.ready = parts_.clock.now();
   (void)parts_.results.post();
 }
 

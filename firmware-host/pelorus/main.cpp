@@ -5,6 +5,7 @@
 #include <exception>
 #include <vector>
 
+#include "firmware-host/pelorus/bench/bench.h"
 #include "firmware-host/pelorus/calib.h"
 #include "firmware-host/pelorus/can/can.h"
 #include "firmware-host/pelorus/command.h"
@@ -25,6 +26,7 @@ int run_tool(int argc, char** argv) {
   app.set_version_flag("--version", "pelorus " PELORUS_VERSION);
   app.require_subcommand(1);
   std::vector<pelorus::Verb> verbs;
+  verbs.push_back(pelorus::add_bench(app));
   verbs.push_back(pelorus::add_calib(app));
   verbs.push_back(pelorus::add_can(app));
   verbs.push_back(pelorus::add_demo(app));
