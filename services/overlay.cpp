@@ -8,42 +8,20 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
+#include "services/body_colors.h"
+
 namespace pelorus {
 namespace {
 
 constexpr std::size_t kTrailLength = 30;  // frames
 constexpr int kShift = 4;                 // sub-pixel bits of OpenCV's drawing coordinates
 
-// Saturated, far apart on the colour circle, none of them the green-grey of the static scene. BGR.
-const std::array<cv::Scalar, 8> kObjectColors = {
-    cv::Scalar(30, 140, 255), cv::Scalar(255, 90, 200), cv::Scalar(255, 200, 40), cv::Scalar(60, 60, 255),
-    cv::Scalar(40, 230, 255), cv::Scalar(255, 110, 90), cv::Scalar(170, 60, 255), cv::Scalar(90, 255, 90)};
-const cv::Scalar kStaticColor(128, 172, 122);
 const cv::Scalar kUnexplainedColor(255, 255, 255);
 const cv::Scalar kBannerColor(34, 30, 26);
 const cv::Scalar kTextColor(235, 235, 235);
 const cv::Scalar kQuietTextColor(165, 165, 160);
 
-cv::Scalar object_color(BodyId id) {
-  return kObjectColors[static_cast<std::size_t>(std::max(0, id.value - 1)) % kObjectColors.size()];
-}
-
-cv::Scalar state_color(VisionState state) {
-  switch (state) {
-    case VisionState::tracking:
-      return {90, 170, 60};
-    case VisionState::degraded:
-      return {30, 150, 235};
-    case VisionState::init:
-    case VisionState::standby:
-      return {150, 130, 110};
-    case VisionState::lost:
-    case VisionState::camera_fault:
-    case VisionState::calibration_fault:
-      return {60, 50, 215};
-  }
-  return {150, 130, 110};
-}
+cv::Scalar bgr(Rgb color) { return {1.0 * color.blue, 1.0 * color.green, 1.0 * color.red}; }
 
 cv::Point fixed_point(double u_px, double v_px) {
   constexpr double kScale = 1 << kShift;
@@ -149,15 +127,15 @@ void Overlay::draw_points(cv::Mat& picture, const FrameResult& result, std::span
     const double u_px = point.curr.z_px.x();
     const double v_px = point.curr.z_px.y();
     if (point.body == kWorldBody) {
-      dot(picture, u_px, v_px, 1.5 * unit, kStaticColor);
+      dot(picture, u_px, v_px, 1.5 * unit, bgr(kStaticColor));
     } else if (point.body == kNoBody) {
       dot(picture, u_px, v_px, 1.6 * unit, cv::Scalar(0, 0, 0));
       dot(picture, u_px, v_px, 1.1 * unit, kUnexplainedColor);
     } else if (is_published(point.body)) {
       dot(picture, u_px, v_px, 2.5 * unit, cv::Scalar(0, 0, 0));
-      dot(picture, u_px, v_px, 2.0 * unit, object_color(point.body));
+      dot(picture, u_px, v_px, 2.0 * unit, bgr(object_color(point.body)));
     } else {
-      dot(picture, u_px, v_px, 1.5 * unit, object_color(point.body) * 0.7);
+      dot(picture, u_px, v_px, 1.5 * unit, bgr(object_color(point.body)) * 0.7);
     }
   }
 }
@@ -174,7 +152,7 @@ void Overlay::draw_trail(cv::Mat& picture, const FrameResult& result, const Obje
     if (in_front) {
       const Eigen::Vector3d z_px = rig_.project(p_cam);
       const cv::Point now = fixed_point(std::clamp(z_px.x(), -2000.0, 4000.0), std::clamp(z_px.y(), -2000.0, 4000.0));
-      if (has_last) cv::line(picture, last, now, object_color(object.id), 1, cv::LINE_AA, kShift);
+      if (has_last) cv::line(picture, last, now, bgr(object_color(object.id)), 1, cv::LINE_AA, kShift);
       last = now;
     }
     has_last = in_front;
@@ -182,7 +160,7 @@ void Overlay::draw_trail(cv::Mat& picture, const FrameResult& result, const Obje
 }
 
 void Overlay::draw_object(cv::Mat& picture, const FrameResult& result, const ObjectState& object) const {
-  const cv::Scalar color = object_color(object.id);
+  const cv::Scalar color = bgr(object_color(object.id));
   const std::vector<cv::Point> polygon = outline_polygon(object);
   if (!is_labelled(object)) {
     if (!polygon.empty()) cv::polylines(picture, polygon, true, color * 0.6, 1, cv::LINE_AA, kShift);
@@ -219,7 +197,7 @@ void Overlay::draw_banner(cv::Mat& banner, const FrameResult& result, std::span<
   const int base = (banner.rows + static_cast<int>(22 * scale)) / 2;
   const std::string state = to_text(result.state);
   const int chip_width = text_width(state, scale, 1) + 20;
-  cv::rectangle(banner, cv::Rect(0, 0, chip_width, banner.rows), state_color(result.state), cv::FILLED);
+  cv::rectangle(banner, cv::Rect(0, 0, chip_width, banner.rows), bgr(state_color(result.state)), cv::FILLED);
   put_text(banner, state, {10, base}, scale, cv::Scalar(255, 255, 255));
 
   const auto count = [&](auto&& wanted) { return std::count_if(points.begin(), points.end(), wanted); };
