@@ -10,6 +10,8 @@
 #include "firmware-host/pelorus/replay/replay_dive.h"
 #include "firmware-host/pelorus/replay/replay_interrupt.h"
 #include "firmware-host/pelorus/replay/replay_run.h"
+#include "firmware-host/pelorus/report/page.h"
+#include "firmware-host/pelorus/report/report.h"
 #include "firmware-host/pelorus/results/result_files.h"
 #include "firmware-host/runtime/replay_source.h"
 #include "firmware-host/runtime/scene_lookup.h"
@@ -90,6 +92,11 @@ Result<int> run_verb(const DemoArguments& arguments) {
   std::printf("Trajectory  %s, objects %s\n", ResultPaths(results).camera.c_str(),
               ResultPaths(results).objects.c_str());
   std::printf("Images      %s (EuRoC layout, with truth)\n", dataset.c_str());
+  if (page_template().empty()) return 0;  // built without the page
+  const fs::path report = ResultPaths(results).report;
+  const Result<Ok> written = write_report(results, dataset.string(), "", report);
+  if (!written) return written.error();
+  std::printf("Report      %s (open it in a browser)\n", report.c_str());
   return 0;
 }
 

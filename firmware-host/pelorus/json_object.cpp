@@ -5,9 +5,8 @@
 #include <cstdio>
 
 namespace pelorus {
-namespace {
 
-std::string quoted(const std::string& text) {
+std::string json_text(const std::string& text) {
   std::string json = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') json += '\\';
@@ -22,11 +21,9 @@ std::string quoted(const std::string& text) {
   return json + "\"";
 }
 
-}  // namespace
-
 JsonObject& JsonObject::raw(const std::string& key, const std::string& json) {
   if (!members_.empty()) members_ += ",";
-  members_ += quoted(key);
+  members_ += json_text(key);
   members_ += ":";
   members_ += json;
   return *this;
@@ -42,7 +39,7 @@ std::string json_number(double value) {
 JsonObject& JsonObject::number(const std::string& key, double value) { return raw(key, json_number(value)); }
 JsonObject& JsonObject::integer(const std::string& key, long long value) { return raw(key, std::to_string(value)); }
 JsonObject& JsonObject::flag(const std::string& key, bool value) { return raw(key, value ? "true" : "false"); }
-JsonObject& JsonObject::text(const std::string& key, const std::string& value) { return raw(key, quoted(value)); }
+JsonObject& JsonObject::text(const std::string& key, const std::string& value) { return raw(key, json_text(value)); }
 
 std::string json_array(const std::vector<std::string>& elements) {
   std::string json = "[";

@@ -20,7 +20,8 @@ class JsonObject {
   std::string members_;
 };
 
-[[nodiscard]] std::string json_number(double value);  // null when not finite
+[[nodiscard]] std::string json_number(double value);           // null when not finite
+[[nodiscard]] std::string json_text(const std::string& text);  // quotes and escapes added
 [[nodiscard]] std::string json_array(const std::vector<std::string>& elements);
 
 }  // namespace pelorus

@@ -14,6 +14,7 @@
 #include "firmware-host/pelorus/eval/ablate.h"
 #include "firmware-host/pelorus/eval/eval.h"
 #include "firmware-host/pelorus/replay/replay.h"
+#include "firmware-host/pelorus/report/report.h"
 #include "firmware-host/pelorus/synth/synth.h"
 #ifdef PELORUS_WITH_LCM
 #include "firmware-host/pelorus/top/top.h"
@@ -33,6 +34,7 @@ int run_tool(int argc, char** argv) {
   verbs.push_back(pelorus::add_doctor(app));
   verbs.push_back(pelorus::add_replay(app));
   verbs.push_back(pelorus::add_eval(app));
+  verbs.push_back(pelorus::add_report(app));
   verbs.push_back(pelorus::add_ablate(app));
   verbs.push_back(pelorus::add_synth(app));
 #ifdef PELORUS_WITH_LCM

@@ -4,29 +4,41 @@
 
 namespace pelorus {
 
-Result<RunEvaluation> evaluate_run(const std::string& dataset, const std::string& calibration_file,
-                                   const std::filesystem::path& folder, const EvaluationConfig& config) {
-  const Result<EstimatedRun> run = read_run(folder);
+Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calibration_file,
+                            const std::filesystem::path& folder, const EvaluationConfig& config) {
+  JudgedRun judged;
+  Result<EstimatedRun> run = read_run(folder);
   if (!run) return run.error();
+  judged.run = std::move(run.value());
   const Result<std::optional<StepTimes>> step_times = read_step_times(folder);
   if (!step_times) return step_times.error();
-  const Result<std::optional<Truth>> truth = read_truth(dataset, calibration_file, run.value());
-  if (!truth) return truth.error();
+  if (!dataset.empty()) {
+    Result<std::optional<Truth>> truth = read_truth(dataset, calibration_file, judged.run);
+    if (!truth) return truth.error();
+    judged.truth = std::move(truth.value());
+  }
 
-  RunEvaluation result;
+  RunEvaluation& result = judged.evaluation;
   result.dataset = dataset;
   result.folder = folder.string();
   result.step_times = step_times.value();
-  if (!truth.value()) {
-    result.evaluation.facts = run_facts(run.value());
-    return result;
+  if (!judged.truth) {
+    result.evaluation.facts = run_facts(judged.run);
+    return judged;
   }
   result.has_truth = true;
-  result.exact_truth = truth.value()->exact;
-  result.scale_known = truth.value()->scale_known;
-  result.truth_origin = truth.value()->origin;
-  result.evaluation = evaluate(run.value(), *truth.value(), config);
-  return result;
+  result.exact_truth = judged.truth->exact;
+  result.scale_known = judged.truth->scale_known;
+  result.truth_origin = judged.truth->origin;
+  result.evaluation = evaluate(judged.run, *judged.truth, config);
+  return judged;
+}
+
+Result<RunEvaluation> evaluate_run(const std::string& dataset, const std::string& calibration_file,
+                                   const std::filesystem::path& folder, const EvaluationConfig& config) {
+  Result<JudgedRun> judged = judge_run(dataset, calibration_file, folder, config);
+  if (!judged) return judged.error();
+  return std::move(judged.value().evaluation);
 }
 
 }  // namespace pelorus

@@ -1,6 +1,6 @@
 #pragma once
 // evaluate_run: the files of a run and the truth of its data set -> all metrics. What `eval`, `ablate` and `demo` print
-// comes from here. Thread-bound.
+// comes from here; judge_run keeps the run and the truth as well, for `report`. Thread-bound.
 
 #include <filesystem>
 #include <optional>
@@ -22,6 +22,16 @@ struct RunEvaluation {
   bool scale_known = true;
   std::string truth_origin;
 };
+
+struct JudgedRun {
+  EstimatedRun run;
+  std::optional<Truth> truth;
+  RunEvaluation evaluation;
+};
+
+// An empty `dataset` says that nothing is known beside the run.
+[[nodiscard]] Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calibration_file,
+                                          const std::filesystem::path& folder, const EvaluationConfig& config);
 
 [[nodiscard]] Result<RunEvaluation> evaluate_run(const std::string& dataset, const std::string& calibration_file,
                                                  const std::filesystem::path& folder, const EvaluationConfig& config);

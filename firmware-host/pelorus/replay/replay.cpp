@@ -73,7 +73,9 @@ Verb add_replay(CLI::App& app) {
   auto arguments = std::make_shared<ReplayArguments>();
   CLI::App* parser = app.add_subcommand("replay", "Recorded frames through the pipeline into result files");
   parser->add_option("DATASET", arguments->dataset, kDatasetHelp)->required();
-  parser->add_option("--out", arguments->out, "Output folder: camera.tum, objects.csv, frames.csv, timing.csv")
+  parser
+      ->add_option("--out", arguments->out,
+                   "Output folder: camera.tum, objects.csv, frames.csv, timing.csv, points.csv, outlines.csv")
       ->required();
   parser->add_option("--calib", arguments->calibration, "Calibration file instead of the data set's own");
   parser->add_option("--config", arguments->configs, "Settings file (config/pelorus.yaml); several apply in turn")

@@ -10,6 +10,7 @@
 #include "core/geometry/rectifier.h"
 #include "core/pipeline/pipeline.h"
 #include "firmware-host/pelorus/results/result_files.h"
+#include "firmware-host/pelorus/results/scene_writer.h"
 #include "services/overlay.h"
 #include "services/side_thread.h"
 
@@ -192,7 +193,7 @@ Result<Ok> make_overlay_folder(const ReplayOptions& options) {
 
 // Steps until the data end; an Error is what ended it early.
 Result<Ok> run_frames(PairFeed& feed, const ReplayOptions& options, const Rectifier& rectifier, ResultWriter& writer,
-                      SummaryCounter& counter, std::uint64_t total) {
+                      SceneWriter& scene, SummaryCounter& counter, std::uint64_t total) {
   std::optional<PipelineThreads> threads;
   if (options.threads) threads.emplace();
   Pipeline pipeline(options.pipeline, rectifier.rig(),
@@ -213,6 +214,7 @@ Result<Ok> run_frames(PairFeed& feed, const ReplayOptions& options, const Rectif
     timing.step_us = microseconds_since(start);
     counter.count(result, timing);
     if (Result<Ok> written = writer.append(result, timing); !written) return written.error();
+    if (Result<Ok> written = scene.append(result, pipeline.points(), frame.left); !written) return written.error();
     overlay.observe(result);
     if (options.overlay_every > 0 && index % static_cast<std::uint64_t>(options.overlay_every) == 0) {
       if (Result<Ok> drawn = draw_overlay(overlay, options, frame, result, pipeline); !drawn) return drawn.error();
@@ -228,13 +230,17 @@ Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& opti
   if (!rectifier) return rectifier.error();
   Result<ResultWriter> writer = ResultWriter::create(options.out_folder);
   if (!writer) return writer.error();
+  Result<SceneWriter> scene = SceneWriter::create(options.out_folder, rectifier.value().rig());
+  if (!scene) return scene.error();
   if (Result<Ok> made = make_overlay_folder(options); !made) return made.error();
   std::uint64_t total = source.pair_count();
   if (options.max_frames > 0) total = total > 0 ? std::min(total, options.max_frames) : options.max_frames;
   PairFeed feed(source, options);
   SummaryCounter counter;
-  Result<Ok> outcome = run_frames(feed, options, rectifier.value(), writer.value(), counter, total);
+  Result<Ok> outcome = run_frames(feed, options, rectifier.value(), writer.value(), scene.value(), counter, total);
+  Result<Ok> finished = scene.value().finish();
   std::optional<Error> failure;
+  if (!finished) failure = finished.error();
   if (!outcome) failure = outcome.error();
   return counter.finish(feed, std::move(failure));
 }

@@ -96,7 +96,8 @@ Error io_error(const fs::path& path, const std::string& detail, const std::strin
 Result<Ok> remove_earlier_run(const fs::path& folder) {
   const ResultPaths paths(folder);
   std::error_code error;
-  for (const fs::path& path : {paths.camera, paths.objects, paths.frames, paths.timing, paths.overlay}) {
+  for (const fs::path& path : {paths.camera, paths.objects, paths.frames, paths.timing, paths.points, paths.outlines,
+                               paths.overlay, paths.report}) {
     fs::remove_all(path, error);
     if (error) return io_error(path, "cannot remove the earlier run: " + error.message(), "choose another --out");
   }
@@ -128,30 +129,30 @@ Result<Ok> prepare_output_folder(const fs::path& folder, bool overwrite) {
   return remove_earlier_run(folder);
 }
 
-Result<ResultWriter::OutputFile> ResultWriter::open(const fs::path& path, const std::string& header) {
-  OutputFile output;
-  output.path = path;
-  output.file.reset(std::fopen(path.c_str(), "wb"));
-  if (!output.file) {
+Result<ResultFile> ResultFile::create(const fs::path& path, const std::string& header) {
+  ResultFile output;
+  output.path_ = path;
+  output.file_.reset(std::fopen(path.c_str(), "wb"));
+  if (!output.file_) {
     return io_error(path, std::string("cannot create the file: ") + std::strerror(errno),
                     "check the folder's rights and free space");
   }
-  if (!header.empty()) std::fprintf(output.file.get(), "%s\n", header.c_str());
-  if (Result<Ok> flushed = flush(output); !flushed) return flushed.error();
+  if (!header.empty()) std::fprintf(output.file_.get(), "%s\n", header.c_str());
+  if (Result<Ok> flushed = output.flush(); !flushed) return flushed.error();
   return output;
 }
 
-Result<Ok> ResultWriter::flush(const OutputFile& output) {
-  if (std::fflush(output.file.get()) == 0 && std::ferror(output.file.get()) == 0) return Ok{};
-  return io_error(output.path, std::string("cannot write: ") + std::strerror(errno),
+Result<Ok> ResultFile::flush() const {
+  if (std::fflush(file_.get()) == 0 && std::ferror(file_.get()) == 0) return Ok{};
+  return io_error(path_, std::string("cannot write: ") + std::strerror(errno),
                   "free space on the device; what was written before is complete");
 }
 
 Result<ResultWriter> ResultWriter::create(const fs::path& folder) {
   const ResultPaths paths(folder);
   ResultWriter writer;
-  const auto open_into = [](OutputFile& output, const fs::path& path, const std::string& header) -> Result<Ok> {
-    Result<OutputFile> opened = open(path, header);
+  const auto open_into = [](ResultFile& output, const fs::path& path, const std::string& header) -> Result<Ok> {
+    Result<ResultFile> opened = ResultFile::create(path, header);
     if (!opened) return opened.error();
     output = std::move(opened.value());
     return Ok{};
@@ -165,7 +166,7 @@ Result<ResultWriter> ResultWriter::create(const fs::path& folder) {
 }
 
 void ResultWriter::write_frame(const FrameResult& result) {
-  std::FILE* file = frames_.file.get();
+  std::FILE* file = frames_.get();
   std::fprintf(file, "%" PRIu64 ",%" PRId64 ",%s,%d", result.seq, result.capture_time.ns, to_text(result.state),
                result.pose_valid ? 1 : 0);
   const FrameReport& report = result.report;
@@ -184,7 +185,7 @@ void ResultWriter::write_frame(const FrameResult& result) {
 }
 
 void ResultWriter::write_timing(const FrameResult& result, const FrameTiming& timing) {
-  std::FILE* file = timing_.file.get();
+  std::FILE* file = timing_.get();
   std::fprintf(file, "%" PRIu64 ",%" PRId64 ",%" PRId64 ",%" PRId64 ",%" PRId64, result.seq, result.capture_time.ns,
                timing.read_us, timing.rectify_us, timing.step_us);
   for (const StageReport& stage : result.report.stages) std::fprintf(file, ",%d", stage.microseconds);
@@ -192,14 +193,14 @@ void ResultWriter::write_timing(const FrameResult& result, const FrameTiming& ti
 }
 
 Result<Ok> ResultWriter::append(const FrameResult& result, const FrameTiming& timing) {
-  if (result.pose_valid) write_camera(camera_.file.get(), result);
+  if (result.pose_valid) write_camera(camera_.get(), result);
   for (const ObjectState& object : result.objects_view()) {
-    write_object(objects_.file.get(), result.capture_time, object);
+    write_object(objects_.get(), result.capture_time, object);
   }
   write_frame(result);
   write_timing(result, timing);
-  for (const OutputFile* output : {&camera_, &objects_, &frames_, &timing_}) {
-    if (Result<Ok> flushed = flush(*output); !flushed) return flushed.error();
+  for (const ResultFile* output : {&camera_, &objects_, &frames_, &timing_}) {
+    if (Result<Ok> flushed = output->flush(); !flushed) return flushed.error();
   }
   return Ok{};
 }

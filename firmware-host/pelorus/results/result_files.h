@@ -29,12 +29,34 @@ struct ResultPaths {
         objects(folder / "objects.csv"),
         frames(folder / "frames.csv"),
         timing(folder / "timing.csv"),
-        overlay(folder / "overlay") {}
+        points(folder / "points.csv"),
+        outlines(folder / "outlines.csv"),
+        overlay(folder / "overlay"),
+        report(folder / "report.html") {}
   std::filesystem::path camera;
   std::filesystem::path objects;
   std::filesystem::path frames;
   std::filesystem::path timing;
+  std::filesystem::path points;
+  std::filesystem::path outlines;
   std::filesystem::path overlay;
+  std::filesystem::path report;
+};
+
+// A file of rows, handed to the kernel at each flush(). Errors name the file.
+class ResultFile {
+ public:
+  // Replaces what is there; the header line is left out when empty.
+  [[nodiscard]] static Result<ResultFile> create(const std::filesystem::path& path, const std::string& header);
+  [[nodiscard]] std::FILE* get() const { return file_.get(); }
+  [[nodiscard]] Result<Ok> flush() const;
+
+ private:
+  struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+  std::unique_ptr<std::FILE, CloseFile> file_;
+  std::filesystem::path path_;
 };
 
 // Makes the folder ready: created when absent; refused when it is a file, cannot be written, or holds anything
@@ -48,23 +70,14 @@ class ResultWriter {
   [[nodiscard]] Result<Ok> append(const FrameResult& result, const FrameTiming& timing);
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  struct OutputFile {
-    std::unique_ptr<std::FILE, CloseFile> file;
-    std::filesystem::path path;
-  };
   ResultWriter() = default;
-  [[nodiscard]] static Result<OutputFile> open(const std::filesystem::path& path, const std::string& header);
-  [[nodiscard]] static Result<Ok> flush(const OutputFile& output);
   void write_frame(const FrameResult& result);
   void write_timing(const FrameResult& result, const FrameTiming& timing);
 
-  OutputFile camera_;
-  OutputFile objects_;
-  OutputFile frames_;
-  OutputFile timing_;
+  ResultFile camera_;
+  ResultFile objects_;
+  ResultFile frames_;
+  ResultFile timing_;
 };
 
 // Covariance of the step motion with the left perturbation taken at the body's centroid instead of the world's

@@ -43,7 +43,8 @@ std::string small_scene(const TemporaryFolder& folder, int frames) {
 }
 
 TEST(CommandLine, EveryVerbExplainsItself) {
-  for (const char* verb : {"replay", "eval", "ablate", "demo", "can dump", "can dbc", "can export", "doctor", "top"}) {
+  for (const char* verb :
+       {"replay", "eval", "report", "ablate", "demo", "can dump", "can dbc", "can export", "doctor", "top"}) {
     const Outcome outcome = run_tool(std::string(verb) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_NE(outcome.text.find("Exit codes"), std::string::npos) << verb;
@@ -138,7 +139,7 @@ TEST(CommandLine, ReplayThenEvalOfASceneGivesTableAndJson) {
   const Outcome replay = run_tool("replay " + scene + " --out " + out);
   ASSERT_EQ(replay.exit_code, 0) << replay.text;
   EXPECT_NE(replay.text.find("4 stepped"), std::string::npos) << replay.text;
-  for (const char* name : {"camera.tum", "objects.csv", "frames.csv", "timing.csv"}) {
+  for (const char* name : {"camera.tum", "objects.csv", "frames.csv", "timing.csv", "points.csv", "outlines.csv"}) {
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(out) / name)) << name;
   }
   const Outcome json = run_tool("eval " + scene + " " + out + " --json");
@@ -250,6 +251,26 @@ TEST(CommandLine, DoctorFailsWhenTheConfiguredSourceIsNotThereAndOnlyThen) {
   EXPECT_NE(bad.text.find("\"topic\":\"source replay\",\"verdict\":\"FAIL\""), std::string::npos) << bad.text;
   write_text(config, "source: {pathh: x}\n");
   EXPECT_EQ(run_tool("doctor --config " + config).exit_code, 5);
+}
+
+TEST(CommandLine, ReportOfWhatIsNoRunSaysSoAndLeavesNoPage) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_tool("report " + folder.path().string());
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.text.find("no camera.tum here"), std::string::npos) << outcome.text;
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST(CommandLine, ReportOfADamagedRunNamesTheLineAndKeepsTheEarlierPage) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  ASSERT_EQ(run_tool("replay " + small_scene(folder, 3) + " --out " + out).exit_code, 0);
+  write_text(out + "/report.html", "earlier");
+  write_text(out + "/timing.csv", "seq,timestamp_ns,rectify_us,step_us\n0,0,1\n");
+  const Outcome outcome = run_tool("report " + out);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.text.find("timing.csv:2"), std::string::npos) << outcome.text;
+  EXPECT_EQ(test::read_text(out + "/report.html"), "earlier");
 }
 
 TEST(CommandLine, DemoDoesNotTouchAForeignFolder) {

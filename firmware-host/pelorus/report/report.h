@@ -1,0 +1,19 @@
+#pragma once
+// `pelorus report`: one self-contained HTML page of a run: what moved where, how well, how fast. What `pelorus demo`
+// ends with.
+
+#include <filesystem>
+#include <string>
+
+#include "firmware-host/pelorus/command.h"
+
+namespace pelorus {
+
+// The page of the run in `folder` into `file`; an empty `dataset` leaves out what needs truth.
+[[nodiscard]] Result<Ok> write_report(const std::filesystem::path& folder, const std::string& dataset,
+                                      const std::string& calibration_file, const std::filesystem::path& file);
+
+// Exit codes: 0 done; 2 usage; 3 bad input, or built without the page; 4 calibration; 6 output.
+[[nodiscard]] Verb add_report(CLI::App& app);
+
+}  // namespace pelorus
