@@ -13,6 +13,7 @@
 #include "firmware-host/pelorus/doctor/doctor.h"
 #include "firmware-host/pelorus/eval/ablate.h"
 #include "firmware-host/pelorus/eval/eval.h"
+#include "firmware-host/pelorus/export/export.h"
 #include "firmware-host/pelorus/replay/replay.h"
 #include "firmware-host/pelorus/report/report.h"
 #include "firmware-host/pelorus/synth/synth.h"
@@ -36,6 +37,7 @@ int run_tool(int argc, char** argv) {
   verbs.push_back(pelorus::add_eval(app));
   verbs.push_back(pelorus::add_report(app));
   verbs.push_back(pelorus::add_ablate(app));
+  verbs.push_back(pelorus::add_export(app));
   verbs.push_back(pelorus::add_synth(app));
 #ifdef PELORUS_WITH_LCM
   verbs.push_back(pelorus::add_top(app));

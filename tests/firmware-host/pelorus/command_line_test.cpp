@@ -44,7 +44,7 @@ std::string small_scene(const TemporaryFolder& folder, int frames) {
 
 TEST(CommandLine, EveryVerbExplainsItself) {
   for (const char* verb :
-       {"replay", "eval", "report", "ablate", "demo", "can dump", "can dbc", "can export", "doctor", "top"}) {
+       {"replay", "eval", "report", "ablate", "demo", "can dump", "can dbc", "can export", "doctor", "export"}) {
     const Outcome outcome = run_tool(std::string(verb) + " --help");
     EXPECT_EQ(outcome.exit_code, 0) << verb;
     EXPECT_NE(outcome.text.find("Exit codes"), std::string::npos) << verb;
@@ -234,6 +234,31 @@ TEST(CommandLine, AblatePrintsARowPerRun) {
   EXPECT_NE(outcome.text.find("\"step_off\":null"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("\"step_off\":\"net_filter\""), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("\"step_off\":\"ray_filter\""), std::string::npos) << outcome.text;
+}
+
+TEST(CommandLine, ExportWritesEachFormatAndRefusesWhatItCannot) {
+  const TemporaryFolder folder;
+  const std::string out = (folder.path() / "out").string();
+  ASSERT_EQ(run_tool("replay " + small_scene(folder, 4) + " --out " + out).exit_code, 0);
+  for (const char* name :
+       {"tum camera.export.tum", "kitti camera.kitti.txt", "csv trajectories.csv", "mcap run.mcap"}) {
+    const std::string word(name), format = word.substr(0, word.find(' ')), file = word.substr(word.find(' ') + 1);
+    const Outcome done = run_tool("export " + out + " --format " + format);
+    EXPECT_EQ(done.exit_code, 0) << done.text;
+    EXPECT_GT(std::filesystem::file_size(std::filesystem::path(out) / file), 0U) << name;
+    EXPECT_EQ(run_tool("export " + out + " --format " + format).exit_code, 6) << name;  // exists already
+    EXPECT_EQ(run_tool("export " + out + " --overwrite --format " + format).exit_code, 0) << name;
+  }
+  // The trajectory of the run itself, in one spelling.
+  EXPECT_EQ(test::read_text(out + "/camera.export.tum"), test::read_text(out + "/camera.tum"));
+  EXPECT_TRUE(std::filesystem::exists(out + "/camera.kitti.txt.times"));
+  const Outcome nobody = run_tool("export " + out + " --format tum --body 77");
+  EXPECT_EQ(nobody.exit_code, 3);
+  EXPECT_NE(nobody.text.find("no body 77"), std::string::npos) << nobody.text;
+  EXPECT_EQ(run_tool("export " + out + " --format csv --body 1").exit_code, 2);
+  EXPECT_EQ(run_tool("export " + out + " --format bag").exit_code, 2);
+  EXPECT_NE(run_tool("export " + folder.path().string() + "/nothing --format csv").exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(out + "/body_77.export.tum"));
 }
 
 TEST(CommandLine, DoctorFailsWhenTheConfiguredSourceIsNotThereAndOnlyThen) {

@@ -193,6 +193,13 @@ TEST(Top, FollowsTheSizeOfTheTerminal) {
   EXPECT_EQ(line_ends, 9) << page;
 }
 
+TEST(Top, ExplainsItself) {
+  const TemporaryFolder folder;
+  ChildProcess top({PELORUS_TOOL, "top", "--help"}, folder.path() / "out");
+  EXPECT_EQ(top.wait_at_most(10), 0);
+  EXPECT_TRUE(says(read_text(folder.path() / "out"), "Exit codes"));
+}
+
 TEST(Top, AFileGetsPlainPages) {
   const TemporaryFolder folder;
   ChildProcess top(top_command(loopback_url(26), {}), folder.path() / "out");

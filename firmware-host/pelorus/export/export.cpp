@@ -1,0 +1,96 @@
+#include "firmware-host/pelorus/export/export.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "firmware-host/pelorus/export/mcap_export.h"
+#include "firmware-host/pelorus/export/partial_file.h"
+#include "firmware-host/pelorus/export/trajectory_text.h"
+#include "firmware-host/pelorus/results/result_reader.h"
+
+namespace pelorus {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ExportArguments {
+  std::string run;
+  std::string format;
+  std::string out;
+  int body = 0;
+  bool overwrite = false;
+};
+
+fs::path default_path(const ExportArguments& arguments) {
+  const fs::path folder(arguments.run);
+  if (arguments.format == "mcap") return folder / "run.mcap";
+  if (arguments.format == "csv") return folder / "trajectories.csv";
+  const std::string whose = arguments.body > 0 ? "body_" + std::to_string(arguments.body) : std::string("camera");
+  return folder / (whose + (arguments.format == "kitti" ? ".kitti.txt" : ".export.tum"));
+}
+
+Result<> write_file(const fs::path& path, const std::string& text, bool overwrite) {
+  Result<PartialFile> file = PartialFile::create(path, overwrite);
+  if (!file) return file.error();
+  file.value().write(text);
+  return file.value().finish();
+}
+
+// TUM or KITTI of one trajectory.
+Result<> export_trajectory(const ExportArguments& arguments, const EstimatedRun& run, const fs::path& path) {
+  std::optional<BodyId> body;
+  if (arguments.body > 0) body = BodyId{arguments.body};
+  const std::vector<TimedPose> poses = poses_of(run, body);
+  if (poses.empty()) {
+    return Error{ErrorCode::bad_input, arguments.run,
+                 body ? "has no body " + std::to_string(arguments.body) : "has no frame with a pose",
+                 body ? "objects.csv lists the numbers" : "see the states in frames.csv"};
+  }
+  if (arguments.format == "tum") return write_file(path, tum_text(poses), arguments.overwrite);
+  // The times first: poses without them would be half of it.
+  const fs::path times = path.string() + ".times";
+  if (auto done = write_file(times, kitti_times_text(poses), arguments.overwrite); !done) return done.error();
+  auto done = write_file(path, kitti_text(poses), arguments.overwrite);
+  std::error_code ignored;
+  if (!done) fs::remove(times, ignored);
+  return done;
+}
+
+Result<int> run_export(const ExportArguments& arguments) {
+  if (arguments.body > 0 && arguments.format != "tum" && arguments.format != "kitti") {
+    return Error{ErrorCode::bad_usage, "--body", "is for tum and kitti, which hold one trajectory",
+                 "leave it out: csv and mcap hold all bodies"};
+  }
+  const Result<EstimatedRun> run = read_run(arguments.run);
+  if (!run) return run.error();
+  if (run.value().empty()) return Error{ErrorCode::bad_input, arguments.run, "the run has no frames", ""};
+  const fs::path path = arguments.out.empty() ? default_path(arguments) : fs::path(arguments.out);
+  const Result<> done = arguments.format == "mcap"  ? export_mcap(run.value(), path, arguments.overwrite)
+                        : arguments.format == "csv" ? write_file(path, csv_text(run.value()), arguments.overwrite)
+                                                    : export_trajectory(arguments, run.value(), path);
+  if (!done) return done.error();
+  std::printf("%s\n", path.c_str());
+  return 0;
+}
+
+}  // namespace
+
+Verb add_export(CLI::App& app) {
+  auto arguments = std::make_shared<ExportArguments>();
+  CLI::App* parser = app.add_subcommand("export", "A run's results in the formats of other tools");
+  parser->add_option("OUT", arguments->run, "The output folder of `pelorus replay`")->required();
+  parser->add_option("--format", arguments->format, "tum, kitti (poses, and PATH.times), csv (camera and bodies), mcap")
+      ->required()
+      ->check(CLI::IsMember({"tum", "kitti", "csv", "mcap"}));
+  parser->add_option("--out", arguments->out, "File to write; without: a name by the format in OUT");
+  parser->add_option("--body", arguments->body, "tum, kitti: this body's trajectory in place of the camera's")
+      ->check(CLI::PositiveNumber);
+  parser->add_flag("--overwrite", arguments->overwrite, "Replace a file of that name");
+  parser->footer("Exit codes: 0 written, 2 usage, 3 no run or nothing in it to write, 6 input/output.");
+  return {parser, [arguments] { return run_export(*arguments); }};
+}
+
+}  // namespace pelorus
