@@ -22,7 +22,8 @@ Grouping::Grouping(const GroupingConfig& config, const SeedPointsConfig& seeds, 
   PELORUS_CHECK(config.neighbours >= 0 && config.neighbours <= static_cast<int>(kMaxNeighbours), "bad neighbours");
   const auto points = static_cast<std::size_t>(capacity);
   const auto proposals = static_cast<std::size_t>(std::max(seeds.columns * seeds.rows, kSampledProposals));
-  const auto motions = std::max(proposals + std::size_t{2} * (kMaxObjects + 1), static_cast<std::size_t>(config.max_groups));
+  const auto motions =
+      std::max(proposals + std::size_t{2} * (kMaxObjects + 1), static_cast<std::size_t>(config.max_groups));
   motions_.reserve(motions);
   motion_chi2_.resize(motions);
   for (auto& chi2 : motion_chi2_) chi2.reserve(points);
