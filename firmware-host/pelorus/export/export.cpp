@@ -8,6 +8,7 @@
 
 #include "firmware-host/pelorus/export/mcap_export.h"
 #include "firmware-host/pelorus/export/partial_file.h"
+#include "firmware-host/pelorus/export/ply_text.h"
 #include "firmware-host/pelorus/export/trajectory_text.h"
 #include "firmware-host/pelorus/results/result_reader.h"
 
@@ -59,7 +60,34 @@ Result<> export_trajectory(const ExportArguments& arguments, const EstimatedRun&
   return done;
 }
 
+// scene.ply and a body_N.ply each, or one body's alone.
+Result<int> export_clouds(const ExportArguments& arguments) {
+  const Result<std::vector<ScenePoint>> points = read_points(arguments.run);
+  if (!points) return points.error();
+  std::vector<BodyId> bodies = bodies_of(points.value());
+  if (arguments.body > 0) std::erase_if(bodies, [&](BodyId body) { return body != BodyId{arguments.body}; });
+  if (bodies.empty()) {
+    return arguments.body > 0
+               ? Error{ErrorCode::bad_input, arguments.run, "has no points of a body " + std::to_string(arguments.body),
+                       "objects.csv lists the numbers"}
+               : Error{ErrorCode::bad_input, arguments.run, "has no points.csv, or none in it",
+                       "replay the recording again: older runs have none"};
+  }
+  const fs::path folder = arguments.out.empty() ? fs::path(arguments.run) : fs::path(arguments.out);
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) return Error{ErrorCode::io, folder.string(), "cannot create: " + error.message(), "check its rights"};
+  for (const BodyId body : bodies) {
+    const fs::path path =
+        folder / (body == kWorldBody ? std::string("scene.ply") : "body_" + std::to_string(body.value) + ".ply");
+    if (auto done = write_file(path, ply_text(points.value(), body), arguments.overwrite); !done) return done.error();
+    std::printf("%s\n", path.c_str());
+  }
+  return 0;
+}
+
 Result<int> run_export(const ExportArguments& arguments) {
+  if (arguments.format == "ply") return export_clouds(arguments);
   if (arguments.body > 0 && arguments.format != "tum" && arguments.format != "kitti") {
     return Error{ErrorCode::bad_usage, "--body", "is for tum and kitti, which hold one trajectory",
                  "leave it out: csv and mcap hold all bodies"};
@@ -82,11 +110,16 @@ Verb add_export(CLI::App& app) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* parser = app.add_subcommand("export", "A run's results in the formats of other tools");
   parser->add_option("OUT", arguments->run, "The output folder of `pelorus replay`")->required();
-  parser->add_option("--format", arguments->format, "tum, kitti (poses, and PATH.times), csv (camera and bodies), mcap")
+  parser
+      ->add_option("--format", arguments->format,
+                   "tum, kitti (poses, and PATH.times), csv (camera and bodies), mcap,\n"
+                   "ply (point clouds: the scene, and each body in its own frame)")
       ->required()
-      ->check(CLI::IsMember({"tum", "kitti", "csv", "mcap"}));
-  parser->add_option("--out", arguments->out, "File to write; without: a name by the format in OUT");
-  parser->add_option("--body", arguments->body, "tum, kitti: this body's trajectory in place of the camera's")
+      ->check(CLI::IsMember({"tum", "kitti", "csv", "mcap", "ply"}));
+  parser->add_option("--out", arguments->out, "File to write (ply: folder); without: a name by the format in OUT");
+  parser
+      ->add_option("--body", arguments->body,
+                   "tum, kitti: this body's trajectory in place of the camera's; ply: its points alone")
       ->check(CLI::PositiveNumber);
   parser->add_flag("--overwrite", arguments->overwrite, "Replace a file of that name");
   parser->footer("Exit codes: 0 written, 2 usage, 3 no run or nothing in it to write, 6 input/output.");

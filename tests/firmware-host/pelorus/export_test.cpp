@@ -5,6 +5,7 @@
 
 #include "firmware-host/pelorus/export/mcap_export.h"
 #include "firmware-host/pelorus/export/partial_file.h"
+#include "firmware-host/pelorus/export/ply_text.h"
 #include "firmware-host/pelorus/export/trajectory_text.h"
 #include "tests/support/temporary_folder.h"
 
@@ -51,6 +52,35 @@ TEST(Export, KittiHasThreeRowsOfTheMatrixAndTimesBesides) {
   const std::vector<TimedPose> poses = poses_of(small_run(), std::nullopt);
   EXPECT_EQ(kitti_text(poses), "0 -1 0 1 1 0 0 2 0 0 1 3\n0 -1 0 1 1 0 0 2 0 0 1 5\n");
   EXPECT_EQ(kitti_times_text(poses), "0.000000000\n0.100000000\n");
+}
+
+TEST(Export, PlyHasThePointsOfOneBodyInBinary) {
+  const auto point = [](BodyId body, const Eigen::Vector3d& p_body, double spread_m, int views, int gray) {
+    ScenePoint made;
+    made.body = body;
+    made.p_body = p_body;
+    made.spread_m = spread_m;
+    made.views = views;
+    made.gray = gray;
+    return made;
+  };
+  const std::vector<ScenePoint> points{point(BodyId{2}, {1.5, -2.0, 0.25}, 0.5, 9, 200),
+                                       point(kWorldBody, {7, 8, 9}, 0.125, 3, 300),
+                                       point(BodyId{2}, {0, 0, 4}, 0, 2, -4)};
+  EXPECT_EQ(bodies_of(points), (std::vector<BodyId>{kWorldBody, BodyId{2}}));
+  const std::string text = ply_text(points, BodyId{2});
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\ncomment frame: body 2, fixed at its birth; meters\nelement vertex 2\n"
+      "property float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+      "property uchar blue\nproperty float spread_m\nproperty int views\nend_header\n";
+  ASSERT_EQ(text.substr(0, header.size()), header);
+  constexpr std::size_t kVertex = 12 + 3 + 4 + 4;
+  ASSERT_EQ(text.size(), header.size() + 2 * kVertex);
+  const std::string expected(
+      "\x00\x00\xC0\x3F\x00\x00\x00\xC0\x00\x00\x80\x3E\xC8\xC8\xC8\x00\x00\x00\x3F\x09\x00\x00\x00", kVertex);
+  EXPECT_EQ(text.substr(header.size(), kVertex), expected);
+  EXPECT_EQ(text[header.size() + kVertex + 12], '\0') << "gray is held to its range";
+  EXPECT_NE(ply_text(points, kWorldBody).find("element vertex 1\n"), std::string::npos);
 }
 
 TEST(Export, CsvHasARowForTheCameraAndForEachBody) {
