@@ -5,43 +5,13 @@
 #include <exception>
 #include <vector>
 
-#include "firmware-host/pelorus/bench/bench.h"
-#include "firmware-host/pelorus/calib.h"
-#include "firmware-host/pelorus/can/can.h"
-#include "firmware-host/pelorus/command.h"
-#include "firmware-host/pelorus/demo.h"
-#include "firmware-host/pelorus/doctor/doctor.h"
-#include "firmware-host/pelorus/eval/ablate.h"
-#include "firmware-host/pelorus/eval/eval.h"
-#include "firmware-host/pelorus/export/export.h"
-#include "firmware-host/pelorus/replay/replay.h"
-#include "firmware-host/pelorus/report/report.h"
-#include "firmware-host/pelorus/synth/synth.h"
-#ifdef PELORUS_WITH_LCM
-#include "firmware-host/pelorus/top/top.h"
-#endif
+#include "firmware-host/pelorus/verbs.h"
 
 namespace {
 
 int run_tool(int argc, char** argv) {
-  CLI::App app{"Pelorus: the vehicle's motion and the tracks of moving rigid bodies from stereo."};
-  app.set_version_flag("--version", "pelorus " PELORUS_VERSION);
-  app.require_subcommand(1);
-  std::vector<pelorus::Verb> verbs;
-  verbs.push_back(pelorus::add_bench(app));
-  verbs.push_back(pelorus::add_calib(app));
-  verbs.push_back(pelorus::add_can(app));
-  verbs.push_back(pelorus::add_demo(app));
-  verbs.push_back(pelorus::add_doctor(app));
-  verbs.push_back(pelorus::add_replay(app));
-  verbs.push_back(pelorus::add_eval(app));
-  verbs.push_back(pelorus::add_report(app));
-  verbs.push_back(pelorus::add_ablate(app));
-  verbs.push_back(pelorus::add_export(app));
-  verbs.push_back(pelorus::add_synth(app));
-#ifdef PELORUS_WITH_LCM
-  verbs.push_back(pelorus::add_top(app));
-#endif
+  CLI::App app;
+  const std::vector<pelorus::Verb> verbs = pelorus::add_verbs(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

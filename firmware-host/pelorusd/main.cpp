@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "firmware-host/pelorusd/app.h"
+#include "firmware-host/pelorusd/service_arguments.h"
 #include "firmware-host/runtime/config_loader.h"
 #include "firmware-host/runtime/settings_hash.h"
 
@@ -15,11 +16,7 @@ namespace {
 
 using pelorus::Error;
 using pelorus::ErrorCode;
-
-struct Arguments {
-  std::vector<std::string> configs;
-  bool check_config = false;
-};
+using pelorus::ServiceArguments;
 
 // The settings of all files, each on top of those before it. The problems of all files are told at once.
 pelorus::Result<pelorus::ServiceConfig> load(const std::vector<std::string>& files) {
@@ -48,17 +45,9 @@ int check(const pelorus::ServiceConfig& config) {
 }
 
 int run_service(int argc, char** argv) {
-  CLI::App parser{"Pelorus: the vehicle's motion and the tracks of moving rigid bodies, live."};
-  parser.set_version_flag("--version", "pelorusd " PELORUS_VERSION);
-  Arguments arguments;
-  parser.add_option("--config", arguments.configs, "Settings file (config/pelorus.yaml); several apply in turn")
-      ->required()
-      ->allow_extra_args(false);
-  parser.add_flag("--check-config", arguments.check_config, "Check the settings, tell all problems, and end");
-  parser.footer(
-      "Exit codes: 0 stopped or recording at its end, 1 unexpected, 2 usage, 3 source, 4 calibration, 5 "
-      "configuration,\n"
-      "6 a file cannot be read, 7 device. See docs/service.md.");
+  CLI::App parser;
+  ServiceArguments arguments;
+  add_service_arguments(parser, arguments);
   try {
     parser.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
