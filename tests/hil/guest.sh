@@ -3,20 +3,23 @@
 # not have: two vivid cameras (/dev/video0, 1), vcan0 and vcan1. The guest's root is this file system, read-only under
 # a RAM overlay, so programs built here run unchanged. Needs no rights and no KVM; the kernel is downloaded once.
 #
-# usage: guest.sh [-t SECONDS] [-o FOLDER] [-m "MODULE ..."] [-v] -- COMMAND [ARGUMENT ...]
+# usage: guest.sh [-t SECONDS] [-o FOLDER] [-m "MODULE ..."] [-v] [-r FOLDER] [-s] -- COMMAND [ARGUMENT ...]
 #   -o  shared with the guest, writable, as /out     -m  further kernel modules     -v  kernel messages
+#   -r  the guest's root in place of this file system    -s  boots that root's systemd; the command is a service of it
 # Exit code: the command's; 124 after the time limit (default 300), 125 when the guest died, 77 when the machine
 # lacks what is needed. PELORUS_HIL_CACHE: where the kernel is kept (default build/hil).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 cache=${PELORUS_HIL_CACHE:-$root/build/hil}
-limit=300 out='' modules='' noise=quiet
-while getopts t:o:m:v option; do
+limit=300 out='' modules='' noise=quiet guest_root=/ systemd=no
+while getopts t:o:m:vr:s option; do
   case $option in
     t) limit=$OPTARG ;;
     o) out=$OPTARG ;;
     m) modules=$OPTARG ;;
     v) noise=ignore_loglevel ;;
+    r) guest_root=$(realpath "$OPTARG") ;;
+    s) systemd=yes ;;
     *) exit 2 ;;
   esac
 done
@@ -59,8 +62,10 @@ mkdir -p "$share" "$boot"/{bin,modules,dev,proc,sys,host,over,root}
 rm -f "$share/.exit_code"
 
 # The command with its arguments, run in this folder.
+folder=$PWD
+[ "$guest_root" = / ] || folder=/
 {
-  printf 'cd %q\nexport PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root\n' "$PWD"
+  printf 'cd %q\nexport PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root\n' "$folder"
   printf 'exec'
   printf ' %q' "$@"
   echo
@@ -98,6 +103,11 @@ $b mkdir -p /root/out
 $b mount -t 9p -o $share out /root/out
 $b ip link set lo up; $b ip route add 224.0.0.0/4 dev lo
 for i in 0 1; do $b ip link add vcan$i type vcan && $b ip link set vcan$i up; done
+if [ -e /boot-systemd ]; then
+  $b cp /boot-systemd /root/etc/systemd/system/guest-command.service
+  for i in dev proc sys; do $b umount /$i; done
+  exec $b switch_root /root /lib/systemd/systemd
+fi
 for i in dev proc sys; do $b mount --move /$i /root/$i; done
 $b mount -t tmpfs none /root/run; $b mount -t tmpfs none /root/tmp
 $b mkdir -p /root/dev/shm /root/dev/pts
@@ -108,14 +118,25 @@ echo $code >/root/out/.code && $b mv /root/out/.code /root/out/.exit_code
 $b poweroff -f
 INIT
 chmod +x "$boot/init"
+[ $systemd = no ] || cat >"$boot/boot-systemd" <<'UNIT'
+[Unit]
+After=multi-user.target
+[Service]
+StandardOutput=tty
+StandardError=tty
+TTYPath=/dev/console
+ExecStart=/bin/bash -c '/bin/bash /out/.command </dev/null; echo $$? >/out/.code; mv /out/.code /out/.exit_code; systemctl poweroff -ff'
+UNIT
 (cd "$boot" && find . | cpio -o -H newc --quiet >"$boot.cpio")
 
+systemd_options=''
+[ $systemd = no ] || systemd_options="systemd.wants=guest-command.service systemd.show_status=0"
 boot_guest() {
   timeout -k 5 "$limit" qemu-system-x86_64 -M pc,usb=off,vmport=off -accel tcg,thread=multi -cpu max -smp 2 -m 1024 \
     -nodefaults -no-user-config -display none -no-reboot -serial stdio \
     -kernel "$cache/kernel/vmlinux" -initrd "$boot.cpio" \
-    -append "console=ttyS0 $noise panic=-1 mitigations=off nokaslr tsc=reliable no_timer_check nowatchdog" \
-    -fsdev local,id=host,path=/,security_model=none,readonly=on,multidevs=remap \
+    -append "console=ttyS0 $noise panic=-1 mitigations=off nokaslr tsc=reliable no_timer_check nowatchdog $systemd_options" \
+    -fsdev local,id=host,path="$guest_root",security_model=none,readonly=on,multidevs=remap \
     -device virtio-9p-pci,fsdev=host,mount_tag=host,disable-legacy=on \
     -fsdev local,id=out,path="$share",security_model=none \
     -device virtio-9p-pci,fsdev=out,mount_tag=out,disable-legacy=on </dev/null

@@ -1,0 +1,29 @@
+#!/usr/bin/env bash
+# In the bare system, after the installation: programs, account, configuration, manual, completion. No systemd runs here.
+# shellcheck disable=SC2016,SC2317 # commands are handed on in quotes, functions as words
+# shellcheck source=tests/package/checks_in_system.sh
+. "$(dirname "$0")/checks_in_system.sh"
+version=$(dpkg-query -W -f '${Version}' pelorus)
+check "pelorus is of the package's version" same "pelorus ${version%-*}" pelorus --version
+check "pelorusd is of the package's version" same "pelorusd ${version%-*}" pelorusd --version
+check "every verb has its manual page" bash -c '
+  for verb in $(. /usr/share/bash-completion/completions/pelorus; COMP_WORDS=(pelorus "") COMP_CWORD=1; _pelorus; echo "${COMPREPLY[@]}"); do
+    pelorus "$verb" --help >/dev/null && zcat "/usr/share/man/man1/pelorus-$verb.1.gz" | grep -q "^.SH OPTIONS" || exit 1
+    n=$((n + 1))
+  done
+  [ "$n" -ge 10 ]'
+check "completion knows the values of an option" same "kalibr" bash -c '
+  . /usr/share/bash-completion/completions/pelorus; COMP_WORDS=(pelorus calib convert --to k) COMP_CWORD=4
+  _pelorus; echo "${COMPREPLY[@]}"'
+check "the service's account is there, without a shell, in group video" bash -c '
+  [[ $(getent passwd pelorus) == *:/var/lib/pelorus:*nologin ]] && id -nG pelorus | grep -qw video'
+check "the configuration is a conffile and nothing else is" same "/etc/pelorus/pelorus.yaml" bash -c '
+  dpkg-query -W -f "\${Conffiles}\n" pelorus | awk "NF {print \$1}"'
+check "all files are as packed" same "" dpkg --verify pelorus pelorus-dev
+check "the service is not enabled by itself" bash -c '! ls /etc/systemd/system/*/pelorusd.service'
+check "the shipped configuration says what is missing" bash -c '
+  pelorusd --config /etc/pelorus/pelorus.yaml --check-config 2>&1 | grep -q "source.path is not given"'
+check "a shipped scene renders and is processed" bash -c '
+  cd "$(mktemp -d)" && pelorus synth paper --frames 4 --out dive && pelorus replay dive --out result &&
+  [ "$(grep -vc "^#" result/camera.tum)" = 4 ]; code=$?; rm -rf "$PWD"; exit $code'
+exit $failed
