@@ -25,7 +25,8 @@ class Session {
     subscription_ = lcm_.subscribe(config.vehicle + ".VIS_COMMAND", &Session::take, this);
   }
 
-  [[nodiscard]] bool good() const { return subscription_ != nullptr; }
+  // Where multicast leaves but does not come back (a firewall), LCM has no socket to wait on, and waiting would abort.
+  [[nodiscard]] bool good() { return subscription_ != nullptr && lcm_.getFileno() >= 0; }
   // False: the connection is of no more use.
   [[nodiscard]] bool wait() { return lcm_.handleTimeout(kWait_ms) >= 0; }
 

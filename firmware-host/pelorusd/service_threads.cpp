@@ -44,6 +44,9 @@ bool ServiceThreads::ask_the_system(LogSink& log) const {
   if (!config.process.realtime) return false;
   const std::string why = realtime_refusal();
   if (!why.empty()) log.line(LogLevel::warning, "no real-time scheduling: " + why);
+  if (const std::string kept = pin_refusal(); why.empty() && config.process.pin && !kept.empty()) {
+    log.line(LogLevel::warning, "threads not pinned to processors: " + kept);
+  }
   return why.empty();
 }
 

@@ -52,15 +52,15 @@ int processor_from_last(int n) {
 
 std::string set_thread(const char* name, ThreadClass wanted, int processor) {
   ::pthread_setname_np(::pthread_self(), name);
+  int unpinned = 0;  // a thread that may not be pinned is still worth its class
   if (processor != kAnyProcessor) {
     cpu_set_t one;
     CPU_ZERO(&one);
     CPU_SET(processor, &one);
-    if (const int error = ::pthread_setaffinity_np(::pthread_self(), sizeof one, &one); error != 0) {
-      return std::strerror(error);
-    }
+    unpinned = ::pthread_setaffinity_np(::pthread_self(), sizeof one, &one);
   }
-  if (wanted == ThreadClass::normal) return "";
+  const std::string pin_refusal = unpinned == 0 ? "" : std::strerror(unpinned);
+  if (wanted == ThreadClass::normal) return pin_refusal;
   if (wanted == ThreadClass::background) {
     // On Linux the nice value is the thread's own.
     return ::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kBackgroundNice) == 0 ? "" : std::strerror(errno);
@@ -72,7 +72,14 @@ std::string set_thread(const char* name, ThreadClass wanted, int processor) {
                               : wanted == ThreadClass::fifo_middle  ? kMiddlePriority
                                                                     : kLowPriority;
   const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
-  return error == 0 ? "" : std::strerror(error);
+  return error == 0 ? pin_refusal : std::strerror(error);
+}
+
+std::string pin_refusal() {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0) return std::strerror(errno);
+  return ::sched_setaffinity(0, sizeof allowed, &allowed) == 0 ? "" : std::strerror(errno);
 }
 
 std::string realtime_refusal() {

@@ -27,6 +27,8 @@ inline constexpr int kAnyProcessor = -1;
 // not.
 [[nodiscard]] std::string set_thread(const char* name, ThreadClass wanted, int processor = kAnyProcessor);
 
+// Whether threads may be kept to one processor; empty, or why not.
+[[nodiscard]] std::string pin_refusal();
 // Whether the process may use real-time scheduling at all; empty, or why not.
 [[nodiscard]] std::string realtime_refusal();
 

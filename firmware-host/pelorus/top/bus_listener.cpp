@@ -41,7 +41,10 @@ void BusListener::listen(std::chrono::milliseconds patience) {
     return;
   }
   if (bus != subscribed_) subscribe(*bus);
-  int outcome = bus->handleTimeout(static_cast<int>(patience.count()));
+  // Where multicast leaves but does not come back (a firewall), LCM has no socket to wait on, and waiting would abort.
+  const bool deaf = bus->getFileno() < 0;
+  if (deaf) view_.trouble = "LCM hears nothing: multicast does not come back (firewall?)";
+  int outcome = deaf ? -1 : bus->handleTimeout(static_cast<int>(patience.count()));
   link_.note(outcome >= 0);
   while (outcome > 0) outcome = bus->handleTimeout(0);
   const ArrivalTime now = std::chrono::steady_clock::now();
