@@ -3,20 +3,22 @@
 # not have: two vivid cameras (/dev/video0, 1), vcan0 and vcan1. The guest's root is this file system, read-only under
 # a RAM overlay, so programs built here run unchanged. Needs no rights and no KVM; the kernel is downloaded once.
 #
-# usage: guest.sh [-t SECONDS] [-o FOLDER] [-m "MODULE ..."] [-v] [-r FOLDER] [-s] -- COMMAND [ARGUMENT ...]
+# usage: guest.sh [-t SECONDS] [-o FOLDER] [-m "MODULE ..."] [-v] [-r FOLDER] [-s | -S] -- COMMAND [ARGUMENT ...]
 #   -o  shared with the guest, writable, as /out     -m  further kernel modules     -v  kernel messages
 #   -r  the guest's root in place of this file system    -s  boots that root's systemd; the command is a service of it
+#   -S  this file system's systemd as process 1, with none of this machine's services; the command is a unit of it
 # Exit code: the command's; 124 after the time limit (default 300), 125 when the guest died, 77 when the machine
 # lacks what is needed. PELORUS_HIL_CACHE: where the kernel is kept (default build/hil).
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 cache=${PELORUS_HIL_CACHE:-$root/build/hil}
-limit=300 out='' modules='' noise=quiet guest_root=/ systemd=no
-while getopts t:o:m:vr:s option; do
+limit=300 out='' modules='' noise=quiet guest_root=/ systemd=no bare_systemd=''
+while getopts t:o:m:vr:sS option; do
   case $option in
     t) limit=$OPTARG ;;
     o) out=$OPTARG ;;
     m) modules=$OPTARG ;;
+    S) bare_systemd=yes ;;
     v) noise=ignore_loglevel ;;
     r) guest_root=$(realpath "$OPTARG") ;;
     s) systemd=yes ;;
@@ -59,7 +61,7 @@ share=${out:-$(mktemp -d)}
 boot=$(mktemp -d)
 trap 'rm -rf "$boot"; [ -n "$out" ] || rm -rf "$share"' EXIT
 mkdir -p "$share" "$boot"/{bin,modules,dev,proc,sys,host,over,root}
-rm -f "$share/.exit_code"
+rm -f "$share/.exit_code" "$share/.hil.service"
 
 # The command with its arguments, run in this folder.
 folder=$PWD
@@ -70,6 +72,23 @@ folder=$PWD
   printf ' %q' "$@"
   echo
 } >"$share/.command"
+if [ -n "$bare_systemd" ]; then
+  cat >"$share/.hil.service" <<'UNIT'
+[Unit]
+DefaultDependencies=no
+Requires=systemd-journald.socket
+After=systemd-journald.socket systemd-journald.service
+SuccessAction=poweroff-force
+FailureAction=poweroff-force
+[Service]
+Type=oneshot
+TimeoutStartSec=infinity
+StandardOutput=tty
+StandardError=tty
+TTYPath=/dev/console
+ExecStart=/bin/bash -c 'bash /out/.command; echo $? >/out/.code; mv /out/.code /out/.exit_code'
+UNIT
+fi
 
 cp "$(command -v busybox)" "$boot/bin/busybox"
 for module in virtio_pci 9pnet_virtio 9p overlay $modules; do
@@ -109,6 +128,15 @@ if [ -e /boot-systemd ]; then
   exec $b switch_root /root /lib/systemd/systemd
 fi
 for i in dev proc sys; do $b mount --move /$i /root/$i; done
+if [ -e /root/out/.hil.service ]; then
+  # None of what this machine starts at boot: neither units that others pull in, nor those that generators make.
+  $b rm -rf /root/etc/systemd/system/*.wants /root/lib/systemd/system/*.wants /root/lib/systemd/system-generators \
+    /root/var/log/journal
+  $b cp /root/out/.hil.service /root/etc/systemd/system/hil.service
+  echo 0123456789abcdef0123456789abcdef >/root/etc/machine-id
+  : >/root/etc/fstab
+  exec $b switch_root /root /lib/systemd/systemd --unit=hil.service
+fi
 $b mount -t tmpfs none /root/run; $b mount -t tmpfs none /root/tmp
 $b mkdir -p /root/dev/shm /root/dev/pts
 $b mount -t tmpfs none /root/dev/shm; $b mount -t devpts none /root/dev/pts
@@ -131,6 +159,7 @@ UNIT
 
 systemd_options=''
 [ $systemd = no ] || systemd_options="systemd.wants=guest-command.service systemd.show_status=0"
+[ -z "$bare_systemd" ] || systemd_options="systemd.log_level=warning systemd.show_status=0"
 boot_guest() {
   timeout -k 5 "$limit" qemu-system-x86_64 -M pc,usb=off,vmport=off -accel tcg,thread=multi -cpu max -smp 2 -m 1024 \
     -nodefaults -no-user-config -display none -no-reboot -serial stdio \

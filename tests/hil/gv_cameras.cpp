@@ -4,7 +4,8 @@
 //   off SIDE | on SIDE | loss SIDE SHARE | freeze SIDE 0|1 | late SIDE PAIRS | clock SIDE SECONDS      SIDE: left,
 //   right
 //
-// usage: gv_cameras DATASET LEFT_ADDRESS RIGHT_ADDRESS RATE_HZ      ends at end of input
+// usage: gv_cameras DATASET LEFT_ADDRESS RIGHT_ADDRESS RATE_HZ [SHOWN_CSV]      ends at end of input
+// SHOWN_CSV: at the end, every picture that either camera took: side, time on the wall clock, index in the recording.
 
 #include <array>
 #include <atomic>
@@ -41,11 +42,19 @@ Result<Film> load(const std::string& path) {
   }
 }
 
+struct Shown {
+  std::int64_t time_ns;
+  std::size_t frame;
+};
+constexpr std::size_t kMostShown = 1'000'000;  // hours
+
 // One of the two cameras and what is wrong with it.
 class Side {
  public:
   Side(const std::vector<Image>& frames, std::string address, std::string serial, double rate_hz)
-      : frames_(frames), address_(std::move(address)), serial_(std::move(serial)), period_ns_(1e9 / rate_hz) {}
+      : frames_(frames), address_(std::move(address)), serial_(std::move(serial)), period_ns_(1e9 / rate_hz) {
+    log_.reserve(kMostShown);
+  }
 
   bool on() {
     camera_ = std::make_unique<test::FakeGvCamera>(
@@ -68,6 +77,8 @@ class Side {
   }
   void freeze(bool frozen) { frozen_ = frozen; }
   void delay(int pairs) { late_ = pairs; }
+  // Of a camera that is off.
+  [[nodiscard]] const std::vector<Shown>& log() const { return log_; }
   [[nodiscard]] std::uint64_t painted() const { return painted_before_ + (camera_ ? camera_->painted() : 0); }
 
  private:
@@ -75,6 +86,7 @@ class Side {
     // The tick at which it fired: painting is late under load, early never by more than a clock's grain.
     const auto tick = static_cast<std::int64_t>(std::floor(static_cast<double>(time_ns) / period_ns_ + 0.25));
     if (!frozen_) shown_ = index_at(tick - late_);
+    if (log_.size() < kMostShown) log_.push_back({std::llround(static_cast<double>(tick) * period_ns_), shown_});
     const Image& frame = frames_[shown_];
     for (int v = 0; v < height && v < frame.height(); ++v)
       std::copy_n(frame.row(v), std::min(width, frame.width()), pixels + static_cast<std::ptrdiff_t>(v) * width);
@@ -93,7 +105,8 @@ class Side {
   double period_ns_;
   std::atomic<bool> frozen_{false};
   std::atomic<int> late_{0};
-  std::size_t shown_ = 0;  // camera's thread
+  std::size_t shown_ = 0;   // camera's thread
+  std::vector<Shown> log_;  // camera's thread
   std::int64_t clock_offset_ns_ = 0;
   std::uint64_t painted_before_ = 0;  // by its instances switched off
   std::unique_ptr<test::FakeGvCamera> camera_;
@@ -110,6 +123,7 @@ void obey(const std::string& line, std::array<Side*, 2> sides) {
     return;
   }
   Side& side = *sides[name == "left" ? 0 : 1];
+  std::printf("obeyed %lld %s\n", static_cast<long long>(g_get_real_time() * 1000), line.c_str());
   if (verb == "off") return side.off();
   if (verb == "on" && !side.on()) std::fprintf(stderr, "gv_cameras: %s does not come up\n", name.c_str());
   if (verb == "loss") side.lose(value);
@@ -118,7 +132,19 @@ void obey(const std::string& line, std::array<Side*, 2> sides) {
   if (verb == "clock") side.set_clock(value);
 }
 
-int run(char** arguments) {
+bool write_shown(const char* path, const std::array<const Side*, 2>& sides) {
+  std::FILE* file = std::fopen(path, "w");
+  if (file == nullptr) return false;
+  for (std::size_t side = 0; side < 2; ++side) {
+    for (const Shown& shown : sides[side]->log()) {
+      std::fprintf(file, "%s,%lld,%zu\n", side == 0 ? "left" : "right", static_cast<long long>(shown.time_ns),
+                   shown.frame);
+    }
+  }
+  return std::fclose(file) == 0;
+}
+
+int run(int count, char** arguments) {
   const Result<Film> film = load(arguments[1]);
   if (!film) {
     std::fprintf(stderr, "%s\n", film.error().message().c_str());
@@ -137,6 +163,12 @@ int run(char** arguments) {
   for (std::string line; std::getline(std::cin, line);) obey(line, {&left, &right});
   std::printf("painted %llu %llu\n", static_cast<unsigned long long>(left.painted()),
               static_cast<unsigned long long>(right.painted()));
+  left.off();
+  right.off();
+  if (count > 5 && !write_shown(arguments[5], {&left, &right})) {
+    std::fprintf(stderr, "gv_cameras: cannot write %s\n", arguments[5]);
+    return 6;
+  }
   return 0;
 }
 
@@ -144,9 +176,9 @@ int run(char** arguments) {
 }  // namespace pelorus
 
 int main(int count, char** arguments) {
-  if (count != 5) {
-    std::fprintf(stderr, "usage: gv_cameras DATASET LEFT_ADDRESS RIGHT_ADDRESS RATE_HZ\n");
+  if (count != 5 && count != 6) {
+    std::fprintf(stderr, "usage: gv_cameras DATASET LEFT_ADDRESS RIGHT_ADDRESS RATE_HZ [SHOWN_CSV]\n");
     return 2;
   }
-  return pelorus::run(arguments);
+  return pelorus::run(count, arguments);
 }

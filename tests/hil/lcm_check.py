@@ -6,40 +6,9 @@ Exit code 1 when fewer results came, or a larger share of the pairs was lost, af
 """
 
 import argparse
-import struct
 import sys
 
-STATES = ["INIT", "TRACKING", "DEGRADED", "LOST", "CAMERA_FAULT", "CALIBRATION_FAULT", "STANDBY"]
-EVENT = struct.Struct(">Iqqii")  # sync word, number, time of reception [us], lengths of channel and data
-ODOM = struct.Struct(">QqqdBqb")  # hash, utime, publish_utime, latency_ms, deadline_missed, seq, state
-HEALTH_COUNTERS = ("pairs_captured results_published deadline_misses dropped_in_source dropped_ring_full "
-                   "dropped_superseded dropped_unpaired results_dropped camera_timeouts frozen_spells steps_shed time_jumps "
-                   "losses_of_track lcm_errors lcm_reconnects previews_skipped").split()
-
-
-def events(path):
-    with open(path, "rb") as log:
-        while header := log.read(EVENT.size):
-            if len(header) < EVENT.size:
-                return  # the logger was stopped in the middle of it
-            sync, _, received_us, channel_length, length = EVENT.unpack(header)
-            if sync != 0xEDA1DA01:
-                raise ValueError(f"{path}: not an LCM log")
-            channel = log.read(channel_length).decode()
-            yield received_us, channel, log.read(length)
-
-
-def health(data):
-    offset = 8 + 8 + 8 + 8 + 1
-    for _ in range(3):
-        (length,) = struct.unpack_from(">i", data, offset)
-        offset += 4 + length
-    offset += 10 * 8
-    counters = dict(zip(HEALTH_COUNTERS, struct.unpack_from(f">{len(HEALTH_COUNTERS)}q", data, offset)))
-    offset += len(HEALTH_COUNTERS) * 8
-    (counters["sync_error_ms"],) = struct.unpack_from(">d", data, offset)
-    return counters
-
+from lcm_log import ODOM, STATES, events, health
 
 def percentiles(values):
     values = sorted(values)
@@ -78,7 +47,7 @@ def main():
     for name, values in (("capture to LCM listener", [(r[0] - r[1]) / 1000 for r in settled]),
                          ("capture to publication", [(r[2] - r[1]) / 1000 for r in settled])):
         print(f"{name} [ms]: " + " ".join(f"{k} {v:.2f}" for k, v in percentiles(values).items()))
-    print("counters:", " ".join(f"{name}={value:g}" for name, value in counters.items() if value))
+    print("counters:", " ".join(f"{name}={value:g}" for name, value in counters.items() if value and name != "utime"))
     return 1 if lost > arguments.max_lost * span else 0
 
 
