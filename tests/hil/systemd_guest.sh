@@ -42,6 +42,8 @@ source:
 timing:
   latency_ms: 900
   deadline_tolerance_ms: 1000
+capture:
+  frame_timeout_ms: 5000
 recorder:
   folder: /var/lib/pelorus
 YAML
