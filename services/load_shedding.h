@@ -1,9 +1,9 @@
 #pragma once
 // LoadShedding: how much optional work a step leaves out so that its result is ready when it is due (ARCHITECTURE,
-// threads and latency): detection first, then refinement, then the objects' windows; frames last of all. Pure.
+// threads and latency): new points first, then the objects' windows; frames last of all. Pure.
 
 #include "core/base/time.h"
-#include "core/pipeline/pipeline.h"
+#include "core/model/stage_data.h"
 
 namespace pelorus {
 
@@ -15,7 +15,8 @@ class LoadShedding {
   void learn(Shed shed, bool refilled, Duration took);
 
  private:
-  // Peaks that fade over some fifty steps: what a step may take again.
+  // What a step may take again: peaks that fade in every step, also while it is being left out, since otherwise one
+  // stall would keep it out for ever.
   Duration with_refill_{};
   Duration without_refill_{};
 };

@@ -36,6 +36,7 @@ void PublishThread::run(const std::stop_token& stop) {
   for (Duration next = release_due(); next < kLongestWait && clock_.now() < end; next = release_due()) {
     desk_.wake.wait(next);
   }
+  send_asides();  // the last health
 }
 
 Duration PublishThread::release_due() {

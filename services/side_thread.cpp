@@ -5,7 +5,15 @@
 namespace pelorus {
 namespace {
 
-constexpr int kSpins = 2000;  // some ten microseconds: what a wake-up costs
+constexpr int kSpins = 300;  // with a pause each some ten microseconds: what a wake-up costs
+
+void pause() {
+#if defined(__x86_64__)
+  __builtin_ia32_pause();
+#elif defined(__aarch64__)
+  asm volatile("yield");
+#endif
+}
 
 }  // namespace
 
@@ -37,6 +45,7 @@ bool SideThread::done() const {
 void SideThread::wait() {
   for (int spin = 0; spin < kSpins; ++spin) {
     if (done()) return;
+    pause();
   }
   const std::uint32_t wanted = started_.load(std::memory_order_relaxed);
   for (std::uint32_t seen = finished_.load(std::memory_order_acquire); seen != wanted;
@@ -50,7 +59,9 @@ void SideThread::run() {
     started_.wait(taken, std::memory_order_acquire);
     if (ending_.load(std::memory_order_relaxed)) return;
     work_.run(work_.on);
-    finished_.store(taken + 1, std::memory_order_release);
+    // Sequentially consistent: notify_one() looks for waiters, and must not look before this store is seen, else one
+    // that counts itself in meanwhile is never woken.
+    finished_.store(taken + 1, std::memory_order_seq_cst);
     finished_.notify_one();
   }
 }

@@ -60,6 +60,7 @@ void Vision::obey() {
   if (wanted == resets_obeyed_) return;
   resets_obeyed_ = wanted;
   pipeline_.reset();  // lets go of the workers
+  shedding_ = LoadShedding();
   pipeline_ = std::make_unique<Pipeline>(config_, parts_.rectifier.rig(), parts_.workers);
   reset_base_ = last_reset_counter_ + 1;
   id_base_ = highest_id_;
@@ -132,7 +133,7 @@ void Vision::step(const StereoPair& pair, Timestamp capture_time, Publication& p
   const Timestamp before = parts_.clock.now();
   const Shed shed = shedding_.choose(capture_time + from_ms(timing_.latency_ms) - before);
   result = pipeline_->step(frame, shed);
-  shedding_.learn(shed, result.report.points_started > 0, parts_.clock.now() - before);
+  shedding_.learn(shed, result.report.refilled, parts_.clock.now() - before);
   if (shed != Shed::nothing) steps_shed_.add();
   publication.step = stepped_ ? capture_time - last_stepped_ : Duration{};
   stepped_ = true;

@@ -1,8 +1,8 @@
 #pragma once
 // Vision: the thread that turns pairs into results: newest pair -> watch -> rectify -> Pipeline::step -> state ->
 // result ring. Also speaks when no pair comes, so that consumers hear of a fault instead of nothing. Built after the
-// publish thread, destroyed before it. Per frame: no lock, no log, no wait but for pictures; heap only for a reset.
-// Thread-safe: status(), and VisionControl.
+// publish thread, destroyed before it. Per frame: no lock, no log, no wait but for pictures and its own helpers; heap
+// only for a reset. Thread-safe: status(), and VisionControl.
 
 #include <atomic>
 #include <functional>

@@ -77,7 +77,8 @@ void FrontEnd::take_images(const StereoFrame& frame) {
   images_.curr = free_slot();
   workers_.tracking.start(work_of<&FrontEnd::build_right>(*this));
   // Detection runs beside the step when it is certain to be wanted at its end: points only get fewer until then.
-  if (may_refill_ && wants_refill()) detect();
+  will_refill_ = may_refill_ && wants_refill();
+  if (will_refill_) detect();
   images_.left[static_cast<std::size_t>(images_.curr)].build(frame.left, config_.klt.levels);
   workers_.tracking.wait();
 }

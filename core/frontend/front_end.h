@@ -85,6 +85,7 @@ class FrontEnd {
     int lost = 0;
     int bridged = 0;
     int started = 0;
+    bool refilled = false;
   };
 
   // Carries all points into `frame`. predictions[0] must be the world's; unknown points start from it.
@@ -168,9 +169,10 @@ class FrontEnd {
   int frames_since_refill_ = 0;
   int frames_since_reference_ = 0;
   bool may_refill_ = true;
-  bool detected_ = false;  // the detector was given the current left image, and may still be at it
-  StereoFrame frame_;      // of the caller, valid during the step
-  struct Share {           // what the tracking worker works on
+  bool will_refill_ = false;  // known from the start: detection runs beside the step
+  bool detected_ = false;     // the detector was given the current left image, and may still be at it
+  StereoFrame frame_;         // of the caller, valid during the step
+  struct Share {              // what the tracking worker works on
     const ImagePyramid* from = nullptr;
     const ImagePyramid* to = nullptr;
     std::span<KltTask> tasks;

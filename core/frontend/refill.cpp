@@ -25,12 +25,13 @@ bool inside_area(const RefillArea& area, const SurfPoint& point) {
 }  // namespace
 
 bool FrontEnd::wants_refill() const {
-  return frames_ <= 1 || static_cast<double>(tracks_.size()) < config_.refill_below * config_.max_points ||
+  return tracks_.empty() || static_cast<double>(tracks_.size()) < config_.refill_below * config_.max_points ||
          frames_since_refill_ >= config_.refill_every;
 }
 
 void FrontEnd::refill(std::span<const RefillArea> areas, bool force) {
-  if (force || (may_refill_ && wants_refill())) {
+  if (force || will_refill_ || (may_refill_ && wants_refill())) {
+    counts_.refilled = true;
     frames_since_refill_ = 0;
     detect();
     workers_.surf.wait();

@@ -19,6 +19,9 @@ enum class StageOutcome : std::uint8_t {
 };
 [[nodiscard]] const char* to_text(StageOutcome outcome);
 
+// What a step leaves out when its time is short; each includes those before it.
+enum class Shed : std::uint8_t { nothing, refill, object_window };
+
 enum class Stage : std::uint8_t {
   front_end,
   partition,
@@ -48,7 +51,8 @@ struct FrameReport {
   std::int32_t births_refused = 0;  // bodies found while the table of kMaxObjects was full
   std::int32_t groups = 0;
   std::int32_t frames_missed = 0;  // gap in seq before this frame, bridged
-  std::int32_t shed = 0;           // optional work left out for lack of time: 0 none (pipeline.h, Shed)
+  Shed shed = Shed::nothing;       // optional work left out for lack of time
+  bool refilled = false;           // new points were looked for
   double sigma_px = 0;             // learned pixel deviation
 
   StageReport& operator[](Stage stage) { return stages[static_cast<std::size_t>(stage)]; }

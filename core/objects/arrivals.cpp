@@ -143,12 +143,7 @@ void Registry::give_birth(const StereoRig& rig, PointPairs pairs, const Group& g
   body.birth_centroid_world = body.T_world_obj.translation();
   body.birth_camera_world = world.T_world_prev.translation();
   body.T_cam_obj = world.T_world_prev.inverse() * body.T_world_obj;
-  observations_.clear();
-  for (const PointIndex i : group.members) {
-    observations_.push_back({at(pairs, i).track, at(pairs, i).prev.z_px, at(pairs, i).sigma_px});
-  }
-  const auto dt = Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
-  body.window.add_frame(rig, world.time + dt, body.T_cam_obj, world.T_world_prev, observations_);
+  add_previous_frame(rig, pairs, world, body);
   bodies_.push_back(std::move(body));
 }
 
@@ -163,13 +158,9 @@ void Registry::resume(const StereoRig& rig, PointPairs pairs, const Group& group
   body.measured = true;
   body.place_known = true;
   body.window.clear();
-  observations_.clear();
-  for (const PointIndex i : group.members) {
-    owner[static_cast<std::size_t>(i)] = body.id;
-    observations_.push_back({at(pairs, i).track, at(pairs, i).prev.z_px, at(pairs, i).sigma_px});
-  }
-  const auto dt = Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
-  body.window.add_frame(rig, world.time + dt, body.T_cam_obj, world.T_world_prev, observations_);
+  for (const PointIndex i : group.members) owner[static_cast<std::size_t>(i)] = body.id;
+  body.frames_missed = 0;  // the window starts anew, at the previous frame
+  add_previous_frame(rig, pairs, world, body);
 }
 
 }  // namespace pelorus

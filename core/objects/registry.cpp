@@ -134,16 +134,22 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
   Rigid3 H_curr_prev = body.H_curr_prev;
   Matrix6d cov_H = fit.cov_H;
   Rigid3 T_cam_obj = body.H_curr_prev * body.T_cam_obj;
+  // After frames without it the window's last frame is older than one step: the previous one goes in first.
+  if (body.frames_missed > 0 && body.window.frames() > 0) add_previous_frame(rig, pairs, world, body);
   observations_.clear();
   for (const PointIndex i : body.members) {
     observations_.push_back({at(pairs, i).track, at(pairs, i).curr.z_px, at(pairs, i).sigma_px});
   }
   body.window.add_frame(rig, world.time, T_cam_obj, world.T_world_curr, observations_);
-  Matrix6d cov_T_cam_obj = cov_H;
+  // Without the window's answer the place is as good as it was before the step, and the step's motion.
+  const Matrix6d Ad = adjoint(world.T_world_curr);
+  const Matrix6d Ad_M = adjoint(world.T_world_curr * H_curr_prev * world.T_world_prev.inverse());
+  Matrix6d cov_T_world_obj = Ad_M * body.cov_T_world_obj * Ad_M.transpose() + Ad * cov_H * Ad.transpose();
   if (steps.object_window && body.window.adjust(rig) == StageOutcome::ok) {
     T_cam_obj = body.window.T_cam_body();
     H_curr_prev = T_cam_obj * body.window.T_cam_body_previous().inverse();
-    cov_T_cam_obj = body.window.cov_T_cam_body();
+    // Back from coasting its place is the expected one still; the window knows the steps since only.
+    if (body.frames_missed == 0) cov_T_world_obj = Ad * body.window.cov_T_cam_body() * Ad.transpose();
     cov_H = body.window.cov_H_curr_prev();
   }
   if (cov_H.isZero()) {  // neither the step nor the window could be solved: nothing was measured
@@ -157,9 +163,8 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
   body.T_world_obj = orthonormalized(world.T_world_curr * T_cam_obj);
   // M_world = T_world_curr * H * T_prev_world (method section 1, in place of the paper's eq. 2).
   body.M_world = world.T_world_curr * H_curr_prev * world.T_world_prev.inverse();
-  const Matrix6d Ad = adjoint(world.T_world_curr);
   body.cov_M_world = Ad * (cov_H + world.cov_H_static) * Ad.transpose();
-  body.cov_T_world_obj = Ad * cov_T_cam_obj * Ad.transpose();
+  body.cov_T_world_obj = cov_T_world_obj;
   const Rigid3 step_obj = T_world_obj_before.inverse() * body.M_world * T_world_obj_before;
   const Vector6d twist = se3_log(step_obj) / world.dt_s;
   const double blend = body.frames_measured == 0 ? 1.0 : 0.6;
@@ -169,6 +174,16 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
   body.frames_missed = 0;
   body.last_seen = world.time;
   if (body.phase == ObjectPhase::coasting) body.phase = ObjectPhase::confirmed;
+}
+
+// What the window has to know of the step's beginning: the pose at the previous frame, and what was seen then.
+void Registry::add_previous_frame(const StereoRig& rig, PointPairs pairs, const WorldStep& world, MovingBody& body) {
+  observations_.clear();
+  for (const PointIndex i : body.members) {
+    observations_.push_back({at(pairs, i).track, at(pairs, i).prev.z_px, at(pairs, i).sigma_px});
+  }
+  const auto dt = Duration(static_cast<std::int64_t>(-world.dt_s * 1e9));
+  body.window.add_frame(rig, world.time + dt, body.T_cam_obj, world.T_world_prev, observations_);
 }
 
 void Registry::remember_points(PointPairs pairs, std::span<const Track* const> track_of_pair, MovingBody& body) {

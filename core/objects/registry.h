@@ -90,6 +90,7 @@ class Registry {
  private:
   void measure(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
                const WorldStep& world, const RegistrySteps& steps, MovingBody& body);
+  void add_previous_frame(const StereoRig& rig, PointPairs pairs, const WorldStep& world, MovingBody& body);
   void remember_points(PointPairs pairs, std::span<const Track* const> track_of_pair, MovingBody& body);
   void weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
                       std::span<const double> chi2_static, const WorldStep& world, MovingBody& body) const;

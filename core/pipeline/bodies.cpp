@@ -98,6 +98,7 @@ void Pipeline::State::start_points() {
   }
   front_end.refill(refill_areas, !started || lost);
   result.report.points_started = front_end.counts().started;
+  result.report.refilled = front_end.counts().refilled;
   started = true;
 }
 

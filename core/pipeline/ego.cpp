@@ -12,7 +12,7 @@ namespace pelorus {
 void Pipeline::State::begin(const StereoFrame& frame, Shed what_to_shed) {
   shed = what_to_shed;
   result = FrameResult{};
-  result.report.shed = static_cast<std::int32_t>(shed);
+  result.report.shed = shed;
   result.seq = frame.seq;
   result.capture_time = frame.capture_time;
   result.reset_counter = reset_counter;
@@ -196,8 +196,8 @@ void Pipeline::State::measure_noise() {
   std::fill(roles.begin(), roles.end(), PointRole::unknown);
 }
 
-// Step by step, and drawn towards where the window saw the camera a frame ago: the first has the smaller noise from
-// frame to frame, the second drifts less.
+// Step by step, and drawn towards where the window saw the camera in a frame before: the first has the smaller noise
+// from frame to frame, the second drifts less.
 void Pipeline::State::refine_ego_motion() {
   if (!started) return;
   if (!ego_found()) {
@@ -228,18 +228,26 @@ void Pipeline::State::refine_ego_motion() {
 
 void Pipeline::State::draw_towards_window() {
   misfits = {};
-  if (const auto answer = ego_window.collect(workers.wait_for_refine)) {
+  StageOutcome outcome = StageOutcome::not_run;
+  if (const auto answer = ego_window.collect(workers.wait_for_refine, outcome)) {
     const Vector6d error = se3_log(answer->T_cam_world.inverse() * T_world_cam_given.inverse());
-    T_world_cam = se3_exp(config.ego_motion.window_pull * error) * T_world_cam;
-    misfits = answer->misfits;
+    // Of one frame: more is no drift but a window that went astray.
+    if (error.head<3>().norm() < config.ego_motion.max_window_error_m &&
+        error.tail<3>().norm() < config.ego_motion.max_window_error_rad) {
+      T_world_cam = se3_exp(config.ego_motion.window_pull * error) * T_world_cam;
+      misfits = answer->misfits;
+    } else {
+      ego_window.forget();
+      outcome = StageOutcome::no_agreement;
+    }
   }
-  result.report[Stage::static_window].outcome = ego_window.outcome();
+  result.report[Stage::static_window].outcome = outcome;
 }
 
 // The frame goes to the window, whose answer comes with a later one.
 void Pipeline::State::give_to_window() {
   if (!started || !ego_found() || !config.steps.static_window) return;
-  if (shed >= Shed::refinement || !ego_window.idle()) return;
+  if (!ego_window.idle()) return;
   observations.clear();
   before.clear();
   for (const PointIndex i : fixed) {
@@ -247,7 +255,9 @@ void Pipeline::State::give_to_window() {
     observations.push_back({pair.track, pair.curr.z_px, pair.sigma_px});
     if (ego_window.is_new()) before.push_back({pair.track, pair.prev.z_px, pair.sigma_px});
   }
-  ego_window.give(world.time, world.dt_s, H_since_given, world.T_world_prev, before, observations);
+  // A new window starts at the frame before this one, whatever went by since the last was given.
+  const Rigid3& H_curr_prev = ego_window.is_new() ? ego.H_curr_prev : H_since_given;
+  ego_window.give(world.time, world.dt_s, H_curr_prev, world.T_world_prev, before, observations);
   T_world_cam_given = T_world_cam;
   H_since_given = Rigid3::Identity();
 }

@@ -47,7 +47,10 @@ const FrameResult& Pipeline::step(const StereoFrame& frame, Shed shed) {
     const StageTimer timer(report[Stage::refill].microseconds);
     s.start_points();
   }
-  s.give_to_window();
+  {
+    const StageTimer timer(report[Stage::static_window].microseconds);
+    s.give_to_window();
+  }
   s.publish();
   return s.result;
 }

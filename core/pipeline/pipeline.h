@@ -20,9 +20,6 @@ struct PipelineWorkers {
   bool wait_for_refine = true;
 };
 
-// What a step leaves out when its time is short; each includes those before it.
-enum class Shed : std::uint8_t { nothing, refill, refinement, object_window };
-
 class Pipeline {
  public:
   Pipeline(const PipelineConfig& config, const StereoRig& rig, const PipelineWorkers& workers = {});

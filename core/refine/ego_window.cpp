@@ -4,6 +4,7 @@ namespace pelorus {
 namespace {
 
 constexpr int kMisfitObservations = 4;  // fewer do not tell
+constexpr int kFailuresToStartAnew = 5;
 
 }  // namespace
 
@@ -16,7 +17,7 @@ EgoWindow::EgoWindow(const BodyWindowConfig& config, const StereoRig& rig, int m
   misfits_.reserve(capacity);
 }
 
-std::optional<EgoWindow::Answer> EgoWindow::collect(bool wait) {
+std::optional<EgoWindow::Answer> EgoWindow::collect(bool wait, StageOutcome& outcome) {
   if (!given_) return std::nullopt;
   if (wait) worker_.wait();
   if (!worker_.done()) return std::nullopt;
@@ -25,7 +26,12 @@ std::optional<EgoWindow::Answer> EgoWindow::collect(bool wait) {
     forgotten_ = false;
     return std::nullopt;
   }
-  if (outcome_ != StageOutcome::ok) return std::nullopt;
+  outcome = worked_;
+  if (worked_ != StageOutcome::ok) {
+    if (++failures_ >= kFailuresToStartAnew) is_new_ = true;
+    return std::nullopt;
+  }
+  failures_ = 0;
   return Answer{window_.T_cam_body(), misfits_};
 }
 
@@ -38,6 +44,7 @@ void EgoWindow::give(Timestamp time, double dt_s, const Rigid3& H_curr_prev, con
   before_.assign(before.begin(), before.end());
   now_.assign(now.begin(), now.end());
   if (is_new_) window_.clear();
+  if (is_new_) failures_ = 0;
   is_new_ = false;
   given_ = true;
   worker_.start(work_of<&EgoWindow::work>(*this));
@@ -56,7 +63,7 @@ void EgoWindow::work() {
   }
   const Rigid3 T_cam_world = H_curr_prev_ * window_.T_cam_body();
   window_.add_frame(rig_, time_, T_cam_world, T_cam_world.inverse(), now_);
-  outcome_ = window_.adjust(rig_);
+  worked_ = window_.adjust(rig_);
   find_misfits();
 }
 

@@ -26,8 +26,9 @@ class EgoWindow {
   EgoWindow& operator=(const EgoWindow&) = delete;
 
   // What has become of the frame given last, once; nothing while the worker is at it (never, with `wait`) or when the
-  // window could not be solved.
-  [[nodiscard]] std::optional<Answer> collect(bool wait);
+  // window could not be solved. `outcome` is set when something was collected. A window that cannot be solved some
+  // times in a row starts anew.
+  [[nodiscard]] std::optional<Answer> collect(bool wait, StageOutcome& outcome);
   // Whether a frame can be given.
   [[nodiscard]] bool idle() const { return !given_; }
 
@@ -38,8 +39,6 @@ class EgoWindow {
   [[nodiscard]] bool is_new() const { return is_new_; }
   // Track was lost: the window starts anew. What is being worked on is not collected.
   void forget();
-
-  [[nodiscard]] StageOutcome outcome() const { return outcome_; }  // of the frame collected last
 
  private:
   void work();
@@ -52,7 +51,7 @@ class EgoWindow {
   bool given_ = false;      // and not collected
   bool forgotten_ = false;  // what is being worked on is of no use
   bool is_new_ = true;
-  StageOutcome outcome_ = StageOutcome::not_run;
+  int failures_ = 0;  // in a row
   // The frame being worked on.
   Timestamp time_;
   double dt_s_ = 0;
@@ -61,6 +60,7 @@ class EgoWindow {
   std::vector<WindowObservation> before_;
   std::vector<WindowObservation> now_;
   std::vector<TrackId> misfits_;
+  StageOutcome worked_ = StageOutcome::not_run;  // the worker's until it is done
 };
 
 }  // namespace pelorus

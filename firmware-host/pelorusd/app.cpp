@@ -91,11 +91,13 @@ int App::run() {
     tick();
     if (!p.service->head->exhausted()) continue;
     p.log.line(LogLevel::notice, "the recording is at its end");
+    report_health();
     p.service->vision.reset();
     std::this_thread::sleep_for(std::chrono::duration<double, std::milli>(p.service->config.timing.latency_ms + 50));
     tick();
     break;
   }
+  if (p.service->vision) report_health();  // the last word on what was counted
   p.manager.notify("STOPPING=1\nSTATUS=stopping");
   p.service->stop();
   take_samples();

@@ -19,7 +19,7 @@ struct Counts {
   long long missed = 0;
   long long without_pose = 0;
   long long degraded = 0;
-  std::array<long long, 4> shed{};
+  std::array<long long, 3> shed{};
   double mean_points = 0;
   double mean_objects = 0;
 };
@@ -30,7 +30,7 @@ Counts count(const LatencyRun& run) {
     c.missed += step.deadline_missed;
     c.without_pose += !step.pose_valid;
     c.degraded += step.state == VisionState::degraded;
-    ++c.shed[static_cast<std::size_t>(std::clamp(step.report.shed, 0, 3))];
+    ++c.shed[static_cast<std::size_t>(step.report.shed)];
     c.mean_points += step.report.points_tracked;
     c.mean_objects += step.objects;
   }
@@ -109,8 +109,7 @@ std::string latency_table(const LatencyContext& context, const LatencyRun& run) 
   }
   add(text, "\ndeadlines missed       %lld of %zu (declared %.4g ms, tolerance %.4g ms)\n", c.missed, run.steps.size(),
       context.options.config.timing.latency_ms, context.options.config.timing.deadline_tolerance_ms);
-  add(text, "steps that shed work   %lld new points, %lld refinement, %lld objects' windows\n", c.shed[1], c.shed[2],
-      c.shed[3]);
+  add(text, "steps that shed work   %lld new points, %lld objects' windows too\n", c.shed[1], c.shed[2]);
   add(text, "pairs not stepped      %llu passed over for newer ones, %llu results dropped, %llu fed late\n",
       static_cast<unsigned long long>(run.pairs_superseded), static_cast<unsigned long long>(run.results_dropped),
       static_cast<unsigned long long>(run.pairs_late));
@@ -162,8 +161,7 @@ std::string latency_json(const LatencyContext& context, const LatencyRun& run) {
       .raw("distributions", spread.str())
       .integer("deadlines_missed", c.missed)
       .integer("shed_refill", c.shed[1])
-      .integer("shed_refinement", c.shed[2])
-      .integer("shed_object_window", c.shed[3])
+      .integer("shed_object_window", c.shed[2])
       .integer("pairs_superseded", static_cast<long long>(run.pairs_superseded))
       .integer("pairs_fed_late", static_cast<long long>(run.pairs_late))
       .integer("results_dropped", static_cast<long long>(run.results_dropped))

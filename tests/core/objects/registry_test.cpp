@@ -195,6 +195,31 @@ TEST(Registry, AfterALossBodiesAreWhereTheyAreRecognisedNotWhereTheyWereExpected
   }
 }
 
+TEST(Registry, AfterMissedFramesTheMotionIsThatOfOneStepAndThePlaceNoBetterThanItIs) {
+  for (const int missed : {1, 3, 8}) {
+    for (const bool same_tracks : {true, false}) {
+      PointWorld world(100);
+      world.twist_cam = twist(0.02, 0.005, 0.01, 0.001, -0.002, 0.001);
+      world.add_body(40, {-0.1, 0, 2.0}, 0.25, twist(0.015, 0, 0.005, 0, 0.01, 0));
+      Passage passage(world);
+      for (int frame = 1; frame <= 8; ++frame) passage.step(frame);
+      ASSERT_EQ(passage.bodies().size(), 1U);
+      const double sigma_before = std::sqrt(passage.bodies()[0].cov_T_world_obj.topLeftCorner<3, 3>().trace());
+      for (int frame = 9; frame < 9 + missed; ++frame) passage.step(frame, false);
+      if (!same_tracks) passage.forget_tracks();
+      passage.step(9 + missed);
+      ASSERT_EQ(passage.bodies().size(), 1U);
+      const MovingBody& body = passage.bodies()[0];
+      ASSERT_TRUE(body.measured);
+      const Eigen::Vector3d center = body.T_world_obj * body.centroid_obj;
+      const Eigen::Vector3d moved = body.M_world * center - passage.view().M_world[1] * center;
+      EXPECT_LT(moved.norm(), 0.006) << missed << " missed, same tracks " << same_tracks;
+      const double sigma = std::sqrt(body.cov_T_world_obj.topLeftCorner<3, 3>().trace());
+      EXPECT_GT(sigma, 0.8 * sigma_before);
+    }
+  }
+}
+
 TEST(Registry, ALossEndsWhatWasNotYetAnObject) {
   PointWorld world = slow_camera(100);
   world.add_body(40, {0, 0, 2.0}, 0.25, twist(0.02, 0, 0, 0, 0, 0));

@@ -28,6 +28,8 @@ class HeldWorker final : public SideWorker {
   bool done_ = true;
 };
 
+StageOutcome outcome = StageOutcome::not_run;  // of what was collected last
+
 // A camera that passes a cloud of points at rest; one of them can be made to creep.
 struct Passage {
   std::vector<Eigen::Vector3d> p_world;
@@ -63,14 +65,14 @@ TEST(EgoWindow, ItsAnswerComesWithALaterFrameAndIsTheTruePose) {
   const Passage passage;
   InlineWorker worker;
   EgoWindow window({}, kRig, 100, 9.0, worker);
-  EXPECT_FALSE(window.collect(true));
+  EXPECT_FALSE(window.collect(true, outcome));
   for (int frame = 1; frame < 12; ++frame) {
     passage.give(window, frame - 1, frame);
     EXPECT_FALSE(window.idle());
-    const auto answer = window.collect(true);
+    const auto answer = window.collect(true, outcome);
     ASSERT_TRUE(answer) << frame;
     EXPECT_LT(se3_log(answer->T_cam_world * passage.T_world_cam(frame)).norm(), 2e-4) << frame;
-    EXPECT_FALSE(window.collect(true)) << "an answer is given once";
+    EXPECT_FALSE(window.collect(true, outcome)) << "an answer is given once";
   }
 }
 
@@ -80,13 +82,13 @@ TEST(EgoWindow, IsNotWaitedForAndTheFramesItMissedAreBridged) {
   EgoWindow window({}, kRig, 100, 9.0, worker);
   for (int frame = 1; frame < 6; ++frame) {
     passage.give(window, frame - 1, frame);
-    EXPECT_FALSE(window.collect(false)) << "still at work";
+    EXPECT_FALSE(window.collect(false, outcome)) << "still at work";
     EXPECT_FALSE(window.idle());
     worker.wait();
-    ASSERT_TRUE(window.collect(false));
+    ASSERT_TRUE(window.collect(false, outcome));
   }
   passage.give(window, 5, 8);  // two frames passed while it was at work
-  const auto answer = window.collect(true);
+  const auto answer = window.collect(true, outcome);
   ASSERT_TRUE(answer);
   EXPECT_LT(se3_log(answer->T_cam_world * passage.T_world_cam(8)).norm(), 2e-4);
 }
@@ -97,20 +99,39 @@ TEST(EgoWindow, WhatWasGivenBeforeALossIsNotCollectedAfterIt) {
   EgoWindow window({}, kRig, 100, 9.0, worker);
   for (int frame = 1; frame < 4; ++frame) {
     passage.give(window, frame - 1, frame);
-    ASSERT_TRUE(window.collect(true));
+    ASSERT_TRUE(window.collect(true, outcome));
   }
   passage.give(window, 3, 4);
   window.forget();
-  EXPECT_FALSE(window.collect(false));
+  EXPECT_FALSE(window.collect(false, outcome));
   EXPECT_FALSE(window.idle()) << "the worker still has the old frame";
   worker.wait();
-  EXPECT_FALSE(window.collect(false)) << "of the time before the loss";
+  EXPECT_FALSE(window.collect(false, outcome)) << "of the time before the loss";
   EXPECT_TRUE(window.idle());
   EXPECT_TRUE(window.is_new());
   passage.give(window, 30, 31);
-  const auto answer = window.collect(true);
+  const auto answer = window.collect(true, outcome);
   ASSERT_TRUE(answer);
   EXPECT_LT(se3_log(answer->T_cam_world * passage.T_world_cam(31)).norm(), 2e-4);
+}
+
+TEST(EgoWindow, OneThatCannotBeSolvedSaysSoAndStartsAnew) {
+  const Passage passage;
+  InlineWorker worker;
+  EgoWindow window({}, kRig, 100, 9.0, worker);
+  passage.give(window, 0, 1);
+  ASSERT_TRUE(window.collect(true, outcome));
+  EXPECT_EQ(outcome, StageOutcome::ok);
+  for (int failures = 0; !window.is_new(); ++failures) {
+    ASSERT_LT(failures, 20);
+    window.give(Timestamp{failures * 100'000'000LL}, 0.1, Rigid3::Identity(), Rigid3::Identity(), {}, {});
+    EXPECT_FALSE(window.collect(true, outcome));
+    EXPECT_EQ(outcome, StageOutcome::too_few_points);
+  }
+  passage.give(window, 40, 41);
+  const auto answer = window.collect(true, outcome);
+  ASSERT_TRUE(answer);
+  EXPECT_LT(se3_log(answer->T_cam_world * passage.T_world_cam(41)).norm(), 2e-4);
 }
 
 TEST(EgoWindow, APointThatCreepsIsNamed) {
@@ -121,7 +142,7 @@ TEST(EgoWindow, APointThatCreepsIsNamed) {
   bool named = false;
   for (int frame = 1; frame < 8; ++frame) {
     passage.give(window, frame - 1, frame);
-    const auto answer = window.collect(true);
+    const auto answer = window.collect(true, outcome);
     ASSERT_TRUE(answer);
     for (const TrackId track : answer->misfits) {
       EXPECT_EQ(track, TrackId{8});
