@@ -43,8 +43,6 @@ FrontEnd::FrontEnd(const FrontEndConfig& config, const StereoRig& rig, const Fro
   starts_.reserve(capacity);
   area_counts_.reserve(64);  // of refill areas
   cell_counts_.reserve(static_cast<std::size_t>(config.cell_columns * config.cell_rows));
-  lost_points_.reserve(capacity);
-  lost_descriptors_.reserve(capacity);
   by_column_.reserve(capacity);
   lost_points_.reserve(capacity);
   lost_descriptors_.reserve(capacity);

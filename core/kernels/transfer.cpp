@@ -14,9 +14,35 @@ struct Symmetric {
   V c00, c01, c02, c11, c12, c22;
 };
 
+// What the three measured coordinates (u_left, v, u_right) see of something.
+template <class V>
+struct Seen {
+  V l, v, r;
+};
+
+// J times the vector (a, b, c).
+template <class V>
+HWY_INLINE Seen<V> seen(V fz, const Seen<V>& slope, V a, V b, V c) {
+  return {hn::Mul(fz, hn::Sub(a, hn::Mul(slope.l, c))), hn::Mul(fz, hn::Sub(b, hn::Mul(slope.v, c))),
+          hn::Mul(fz, hn::Sub(a, hn::Mul(slope.r, c)))};
+}
+
+// 1 + q q^T + u u^T + v v^T.
+template <class V>
+HWY_INLINE Symmetric<V> covariance(V one, const Seen<V>& q, const Seen<V>& u, const Seen<V>& v) {
+  const auto entry = [](V q0, V q1, V u0, V u1, V v0, V v1)
+                         HWY_ATTR { return hn::Add(hn::Add(hn::Mul(q0, q1), hn::Mul(u0, u1)), hn::Mul(v0, v1)); };
+  return {hn::Add(one, entry(q.l, q.l, u.l, u.l, v.l, v.l)),
+          entry(q.l, q.v, u.l, u.v, v.l, v.v),
+          entry(q.l, q.r, u.l, u.r, v.l, v.r),
+          hn::Add(one, entry(q.v, q.v, u.v, u.v, v.v, v.v)),
+          entry(q.v, q.r, u.v, u.r, v.v, v.r),
+          hn::Add(one, entry(q.r, q.r, u.r, u.r, v.r, v.r))};
+}
+
 // e^T C^-1 e by cofactors.
 template <class V>
-HWY_INLINE V solved_square(const Symmetric<V>& c, V eu, V ev, V er) {
+HWY_INLINE V solved_square(const Symmetric<V>& c, const Seen<V>& e) {
   const V a00 = hn::Sub(hn::Mul(c.c11, c.c22), hn::Mul(c.c12, c.c12));
   const V a01 = hn::Sub(hn::Mul(c.c02, c.c12), hn::Mul(c.c01, c.c22));
   const V a02 = hn::Sub(hn::Mul(c.c01, c.c12), hn::Mul(c.c02, c.c11));
@@ -24,10 +50,10 @@ HWY_INLINE V solved_square(const Symmetric<V>& c, V eu, V ev, V er) {
   const V a12 = hn::Sub(hn::Mul(c.c01, c.c02), hn::Mul(c.c00, c.c12));
   const V a22 = hn::Sub(hn::Mul(c.c00, c.c11), hn::Mul(c.c01, c.c01));
   const V determinant = hn::Add(hn::Add(hn::Mul(c.c00, a00), hn::Mul(c.c01, a01)), hn::Mul(c.c02, a02));
-  const V su = hn::Add(hn::Add(hn::Mul(a00, eu), hn::Mul(a01, ev)), hn::Mul(a02, er));
-  const V sv = hn::Add(hn::Add(hn::Mul(a01, eu), hn::Mul(a11, ev)), hn::Mul(a12, er));
-  const V sr = hn::Add(hn::Add(hn::Mul(a02, eu), hn::Mul(a12, ev)), hn::Mul(a22, er));
-  const V sum = hn::Add(hn::Add(hn::Mul(eu, su), hn::Mul(ev, sv)), hn::Mul(er, sr));
+  const V su = hn::Add(hn::Add(hn::Mul(a00, e.l), hn::Mul(a01, e.v)), hn::Mul(a02, e.r));
+  const V sv = hn::Add(hn::Add(hn::Mul(a01, e.l), hn::Mul(a11, e.v)), hn::Mul(a12, e.r));
+  const V sr = hn::Add(hn::Add(hn::Mul(a02, e.l), hn::Mul(a12, e.v)), hn::Mul(a22, e.r));
+  const V sum = hn::Add(hn::Add(hn::Mul(e.l, su), hn::Mul(e.v, sv)), hn::Mul(e.r, sr));
   return hn::Div(sum, determinant);
 }
 
@@ -60,43 +86,15 @@ void transfer_chi2(const TransferMotion& motion, const TransferColumns& points, 
     const auto in_front = hn::Gt(pz, set(1e-3));
     const V iz = hn::Div(one, hn::IfThenElse(in_front, pz, one));
     const V fz = hn::Mul(f, iz);
-    const V slope_l = hn::Mul(px, iz);
-    const V slope_v = hn::Mul(py, iz);
-    const V slope_r = hn::Mul(hn::Sub(px, baseline), iz);
-    const V eu = hn::Sub(hn::LoadU(d, points.u_left_px + i), hn::Add(hn::Mul(f, slope_l), set(motion.cx_px)));
-    const V ev = hn::Sub(hn::LoadU(d, points.v_px + i), hn::Add(hn::Mul(f, slope_v), set(motion.cy_px)));
-    const V er = hn::Sub(hn::LoadU(d, points.u_right_px + i), hn::Add(hn::Mul(f, slope_r), set(motion.cx_px)));
-
-    // J times a vector (a, b, c), row by row.
-    const auto row_of = [&](V a, V c, V slope) HWY_ATTR { return hn::Mul(fz, hn::Sub(a, hn::Mul(slope, c))); };
-    const V qx = hn::Neg(hn::Mul(rx, k));
-    const V qy = hn::Neg(hn::Mul(ry, k));
-    const V qz = hn::Neg(hn::Mul(rz, k));
-    const V ql = row_of(qx, qz, slope_l);
-    const V qv = row_of(qy, qz, slope_v);
-    const V qr = row_of(qx, qz, slope_r);
-    const V ux = hn::Mul(m, set(r[0]));
-    const V uy = hn::Mul(m, set(r[3]));
-    const V uz = hn::Mul(m, set(r[6]));
-    const V ul = hn::Add(ql, row_of(ux, uz, slope_l));
-    const V uv = hn::Add(qv, row_of(uy, uz, slope_v));
-    const V ur = hn::Add(qr, row_of(ux, uz, slope_r));
-    const V vx = hn::Mul(m, set(r[1]));
-    const V vy = hn::Mul(m, set(r[4]));
-    const V vz = hn::Mul(m, set(r[7]));
-    const V vl = row_of(vx, vz, slope_l);
-    const V vv = row_of(vy, vz, slope_v);
-    const V vr = row_of(vx, vz, slope_r);
-
-    const auto entry = [&](V q0, V q1, V u0, V u1, V v0, V v1)
-                           HWY_ATTR { return hn::Add(hn::Add(hn::Mul(q0, q1), hn::Mul(u0, u1)), hn::Mul(v0, v1)); };
-    const V c00 = hn::Add(one, entry(ql, ql, ul, ul, vl, vl));
-    const V c11 = hn::Add(one, entry(qv, qv, uv, uv, vv, vv));
-    const V c22 = hn::Add(one, entry(qr, qr, ur, ur, vr, vr));
-    const V c01 = entry(ql, qv, ul, uv, vl, vv);
-    const V c02 = entry(ql, qr, ul, ur, vl, vr);
-    const V c12 = entry(qv, qr, uv, ur, vv, vr);
-    const V square = solved_square(Symmetric<V>{c00, c01, c02, c11, c12, c22}, eu, ev, er);
+    const Seen<V> slope{hn::Mul(px, iz), hn::Mul(py, iz), hn::Mul(hn::Sub(px, baseline), iz)};
+    const Seen<V> e{hn::Sub(hn::LoadU(d, points.u_left_px + i), hn::Add(hn::Mul(f, slope.l), set(motion.cx_px))),
+                    hn::Sub(hn::LoadU(d, points.v_px + i), hn::Add(hn::Mul(f, slope.v), set(motion.cy_px))),
+                    hn::Sub(hn::LoadU(d, points.u_right_px + i), hn::Add(hn::Mul(f, slope.r), set(motion.cx_px)))};
+    const Seen<V> q = seen(fz, slope, hn::Neg(hn::Mul(rx, k)), hn::Neg(hn::Mul(ry, k)), hn::Neg(hn::Mul(rz, k)));
+    const Seen<V> mu = seen(fz, slope, hn::Mul(m, set(r[0])), hn::Mul(m, set(r[3])), hn::Mul(m, set(r[6])));
+    const Seen<V> u{hn::Add(q.l, mu.l), hn::Add(q.v, mu.v), hn::Add(q.r, mu.r)};
+    const Seen<V> v = seen(fz, slope, hn::Mul(m, set(r[1])), hn::Mul(m, set(r[4])), hn::Mul(m, set(r[7])));
+    const V square = solved_square(covariance(one, q, u, v), e);
     const V value = hn::Mul(square, hn::LoadU(d, points.per_variance + i));
     hn::StoreU(hn::IfThenElse(in_front, value, set(kImpossibleChi2)), d, chi2 + i);
   }
