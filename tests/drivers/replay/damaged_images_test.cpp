@@ -14,33 +14,6 @@ namespace fs = std::filesystem;
 
 using DamagedImages = RecordingFixture;
 
-std::unique_ptr<StereoSource> open(const fs::path& path) {
-  auto source = open_dataset(path);
-  EXPECT_TRUE(source.ok()) << (source.ok() ? "" : source.error().message());
-  return source.ok() ? std::move(source.value()) : nullptr;
-}
-
-// An error must say where, what and the cure.
-void expect_error(const fs::path& path, const std::string& place, const std::string& detail) {
-  const auto source = open_dataset(path);
-  ASSERT_FALSE(source.ok()) << "no error where " << detail << " was expected";
-  const Error& e = source.error();
-  EXPECT_NE(e.place.find(place), std::string::npos) << e.message();
-  EXPECT_NE(e.detail.find(detail), std::string::npos) << e.message();
-  EXPECT_FALSE(e.cure.empty()) << e.message();
-}
-
-std::vector<std::uint64_t> all_seqs(StereoSource& source) {
-  std::vector<std::uint64_t> seqs;
-  SourcePair pair;
-  while (true) {
-    const auto more = source.next(pair);
-    EXPECT_TRUE(more.ok()) << (more.ok() ? "" : more.error().message());
-    if (!more.ok() || !more.value()) return seqs;
-    seqs.push_back(pair.seq);
-  }
-}
-
 TEST_F(DamagedImages, ATruncatedImageIsAnErrorWithFileAndFrameAndReadingGoesOn) {
   const fs::path root = euroc();
   const fs::path broken = root / "mav0/cam1/data" / png(2);

@@ -7,12 +7,42 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
+#include "drivers/replay/dataset.h"
 #include "tests/support/temporary_folder.h"
 
 namespace pelorus {
+
+inline std::unique_ptr<StereoSource> open(const std::filesystem::path& path) {
+  auto source = open_dataset(path);
+  EXPECT_TRUE(source.ok()) << (source.ok() ? "" : source.error().message());
+  return source.ok() ? std::move(source.value()) : nullptr;
+}
+
+// An error must say where, what and the cure.
+inline void expect_error(const std::filesystem::path& path, const std::string& place, const std::string& detail) {
+  const auto source = open_dataset(path);
+  ASSERT_FALSE(source.ok()) << "no error where " << detail << " was expected";
+  const Error& e = source.error();
+  EXPECT_NE(e.place.find(place), std::string::npos) << e.message();
+  EXPECT_NE(e.detail.find(detail), std::string::npos) << e.message();
+  EXPECT_FALSE(e.cure.empty()) << e.message();
+}
+
+inline std::vector<std::uint64_t> all_seqs(StereoSource& source) {
+  std::vector<std::uint64_t> seqs;
+  SourcePair pair;
+  while (true) {
+    const auto more = source.next(pair);
+    EXPECT_TRUE(more.ok()) << (more.ok() ? "" : more.error().message());
+    if (!more.ok() || !more.value()) return seqs;
+    seqs.push_back(pair.seq);
+  }
+}
 
 class RecordingFixture : public testing::Test {
  protected:
