@@ -1,7 +1,9 @@
 #include "services/command_listener.h"
 
 #include <chrono>
+#include <condition_variable>
 #include <lcm/lcm-cpp.hpp>
+#include <mutex>
 #include <pelorus/vis_command_ack_t.hpp>
 #include <pelorus/vis_command_t.hpp>
 
@@ -9,18 +11,42 @@ namespace pelorus {
 namespace {
 
 constexpr int kWait_ms = 100;
-constexpr int kRetryTurns = 10;
+constexpr auto kRetry = std::chrono::seconds(1);
+constexpr auto kLongestEnd = std::chrono::milliseconds(300);
 
 std::int64_t now_us() {
   const auto now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
 }
 
+}  // namespace
+
+struct CommandListener::Shared {
+  LcmConfig config;
+  std::mutex mutex;  // of the rest; per command and at the end only
+  std::condition_variable change;
+  Handler handler;  // empty once the listener has ended
+  bool stopping = false;
+  bool ended = false;
+
+  [[nodiscard]] bool asked_to_stop() {
+    const std::lock_guard lock(mutex);
+    return stopping;
+  }
+  CommandAnswer answer(const std::string& command, const std::string& argument) {
+    const std::lock_guard lock(mutex);
+    return handler ? handler(command, argument) : CommandAnswer{false, "ending"};
+  }
+  void run();
+};
+
+namespace {
+
 // One connection with its subscription.
 class Session {
  public:
-  Session(const LcmConfig& config, const CommandListener::Handler& handler)
-      : lcm_(config.url), handler_(handler), ack_channel_(config.vehicle + ".VIS_COMMAND_ACK") {
+  Session(const LcmConfig& config, CommandListener::Handler handler)
+      : lcm_(config.url), handler_(std::move(handler)), ack_channel_(config.vehicle + ".VIS_COMMAND_ACK") {
     if (!lcm_.good()) return;
     subscription_ = lcm_.subscribe(config.vehicle + ".VIS_COMMAND", &Session::take, this);
   }
@@ -43,25 +69,44 @@ class Session {
   }
 
   lcm::LCM lcm_;
-  const CommandListener::Handler& handler_;
+  CommandListener::Handler handler_;
   std::string ack_channel_;
   lcm::Subscription* subscription_ = nullptr;
 };
 
 }  // namespace
 
-CommandListener::CommandListener(const LcmConfig& config, Handler handler)
-    : config_(config), handler_(std::move(handler)), thread_([this](const std::stop_token& stop) { run(stop); }) {}
+CommandListener::CommandListener(const LcmConfig& config, Handler handler) : shared_(std::make_shared<Shared>()) {
+  shared_->config = config;
+  shared_->handler = std::move(handler);
+  thread_ = std::thread([shared = shared_] { shared->run(); });
+}
 
-void CommandListener::run(const std::stop_token& stop) {
-  while (!stop.stop_requested()) {
-    Session session(config_, handler_);
-    while (session.good() && !stop.stop_requested() && session.wait()) {
+CommandListener::~CommandListener() {
+  std::unique_lock lock(shared_->mutex);
+  shared_->stopping = true;
+  shared_->handler = nullptr;
+  shared_->change.notify_all();
+  const bool ended = shared_->change.wait_for(lock, kLongestEnd, [this] { return shared_->ended; });
+  lock.unlock();
+  ended ? thread_.join() : thread_.detach();
+}
+
+void CommandListener::Shared::run() {
+  while (!asked_to_stop()) {
+    {
+      Session session(config, [this](const std::string& command, const std::string& argument) {
+        return answer(command, argument);
+      });
+      while (session.good() && !asked_to_stop() && session.wait()) {
+      }
     }
-    for (int turn = 0; turn < kRetryTurns && !stop.stop_requested(); ++turn) {
-      std::this_thread::sleep_for(std::chrono::milliseconds(kWait_ms));
-    }
+    std::unique_lock lock(mutex);
+    change.wait_for(lock, kRetry, [this] { return stopping; });
   }
+  const std::lock_guard lock(mutex);
+  ended = true;
+  change.notify_all();
 }
 
 }  // namespace pelorus

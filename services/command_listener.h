@@ -1,10 +1,11 @@
 #pragma once
 // CommandListener: VIS_COMMAND in, VIS_COMMAND_ACK out, on a thread and a connection of its own, because liblcm's first
-// subscription tests the network for up to ten seconds. The handler is called on that thread and answers at once.
-// A stop takes at most 0.1 s, or that self-test.
+// subscription tests the network for up to ten seconds. The handler is called on that thread and answers at once; it is
+// not called after the listener's end. The end waits for the thread for a moment only: one that is caught in that test
+// is left to itself, and owns all that it touches.
 
 #include <functional>
-#include <stop_token>
+#include <memory>
 #include <string>
 #include <thread>
 
@@ -21,13 +22,15 @@ class CommandListener {
  public:
   using Handler = std::function<CommandAnswer(const std::string& command, const std::string& argument)>;
   CommandListener(const LcmConfig& config, Handler handler);
+  ~CommandListener();
+  CommandListener(const CommandListener&) = delete;
+  CommandListener& operator=(const CommandListener&) = delete;
 
  private:
-  void run(const std::stop_token& stop);
+  struct Shared;  // with the thread, which may outlive the listener
 
-  LcmConfig config_;
-  Handler handler_;
-  std::jthread thread_;  // last: everything above is ready when it starts
+  std::shared_ptr<Shared> shared_;
+  std::thread thread_;
 };
 
 }  // namespace pelorus
