@@ -41,6 +41,7 @@ Pipeline::State::State(const PipelineConfig& c, const StereoRig& r, const Pipeli
   open.reserve(points);
   predictions.reserve(kMaxObjects + 1);
   residuals.reserve(points);
+  depths.reserve(points);
   observations.reserve(points);
   before.reserve(points);
   rejected.reserve(points);

@@ -8,6 +8,16 @@
 #include "core/pipeline/state.h"
 
 namespace pelorus {
+namespace {
+
+// Of at least one value; changes their order.
+double median_of(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+}  // namespace
 
 void Pipeline::State::begin(const StereoFrame& frame, Shed what_to_shed) {
   shed = what_to_shed;
@@ -177,9 +187,7 @@ void Pipeline::State::learn_sigma(double rate) {
     if (pair.previous_body <= kWorldBody) residuals.push_back(transfer_chi2(rig, ego.H_curr_prev, pair));
   }
   if (residuals.size() < 20) return;
-  const auto middle = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 2);
-  std::nth_element(residuals.begin(), middle, residuals.end());
-  const double measured_px = sigma_px * std::sqrt(*middle / 2.366);
+  const double measured_px = sigma_px * std::sqrt(median_of(residuals) / 2.366);
   const EgoMotionConfig& c = config.ego_motion;
   sigma_px = std::clamp(sigma_px + rate * (measured_px - sigma_px), c.min_sigma_px, c.max_sigma_px);
 }
@@ -231,9 +239,11 @@ void Pipeline::State::draw_towards_window() {
   StageOutcome outcome = StageOutcome::not_run;
   if (const auto answer = ego_window.collect(workers.wait_for_refine, outcome)) {
     const Vector6d error = se3_log(answer->T_cam_world.inverse() * T_world_cam_given.inverse());
-    // Of one frame: more is no drift but a window that went astray.
-    if (error.head<3>().norm() < config.ego_motion.max_window_error_m &&
-        error.tail<3>().norm() < config.ego_motion.max_window_error_rad) {
+    // Of one frame: more is no drift but a window that went astray. A shift counts as the angle it is seen under.
+    depths.clear();
+    for (const PointIndex i : fixed) depths.push_back(pairs[static_cast<std::size_t>(i)].curr.p_cam.z());
+    const double limit = config.ego_motion.max_window_error_rad;
+    if (!depths.empty() && error.head<3>().norm() < limit * median_of(depths) && error.tail<3>().norm() < limit) {
       T_world_cam = se3_exp(config.ego_motion.window_pull * error) * T_world_cam;
       misfits = answer->misfits;
     } else {

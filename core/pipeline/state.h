@@ -88,6 +88,7 @@ struct Pipeline::State {
   double sigma_px = 0.25;
   int reset_counter = 0;
   std::vector<double> residuals;
+  std::vector<double> depths;
   std::vector<WindowObservation> observations;
   std::vector<WindowObservation> before;
   std::vector<TrackId> rejected;

@@ -79,13 +79,13 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
       [] { (void)set_thread("record", ThreadClass::background); });
   const bool pinned = realtime && config.process.pin;
   workers.reset(new PipelineThreads{
-      SideThread(prepared("klt", ThreadClass::fifo_middle, pinned ? processor_from_last(1) : kAnyProcessor)),
-      SideThread(prepared("surf", ThreadClass::fifo_low)), SideThread(prepared("refine", ThreadClass::normal))});
+      SideThread(prepared("klt", ThreadClass::fifo_middle, pinned ? processor_to_bind(1) : kAnyProcessor)),
+      SideThread(prepared("surf", ThreadClass::fifo_low)), SideThread(prepared("refine", ThreadClass::fifo_behind))});
   const VisionParts parts{head->sync(), *rectifier,    desk.results,   control,
                           clock,        preview.get(), recorder.get(), workers->workers(false)};
   vision = std::make_unique<Vision>(
       parts, config.pipeline, config.capture, config.timing,
-      prepared("vision", ThreadClass::fifo_middle, pinned ? processor_from_last(0) : kAnyProcessor));
+      prepared("vision", ThreadClass::fifo_middle, pinned ? processor_to_bind(0) : kAnyProcessor));
   // A device's thread copies; that of a recording decodes or renders, which must not keep others waiting.
   head->start(prepared("capture", head->is_live() ? ThreadClass::fifo_high : ThreadClass::normal));
   if (config.lcm.enabled && config.lcm.commands) {

@@ -35,7 +35,8 @@ Result<> StereoHead::prepare_source(const SourceConfig& source, const CaptureClo
     return Error{ErrorCode::bad_input, source.path, "is no folder of recorded pairs and no LCM log",
                  "check source.path"};
   }
-  // Opened once here, so that a wrong path or calibration ends the start with its own message.
+  // Read here, so that a wrong path or calibration or exchanged pictures end the start with their own message.
+  if (const Result<> usable = check_recording(source.path, source.calibration); !usable) return usable.error();
   Result<std::unique_ptr<StereoSource>> first = open_source(source.path, source.calibration);
   if (!first) return first.error();
   calibration_ = first.value()->calibration();

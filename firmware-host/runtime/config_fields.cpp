@@ -161,7 +161,6 @@ void list(FieldList& f, EgoMotionConfig& c) {
   f.add("point_gate_chi2", c.point_gate_chi2, 0.1, kMaxChi2);
   f.add("unexplained_frames", c.unexplained_frames, 1, 1000);
   f.add("window_pull", c.window_pull, 0, 1);
-  f.add("max_window_error_m", c.max_window_error_m, 0, 100);
   f.add("max_window_error_rad", c.max_window_error_rad, 0, 4);
   f.add("lost_inflation", c.lost_inflation, 1, 1e6);
 }

@@ -8,6 +8,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <fstream>
+#include <set>
 
 namespace pelorus {
 namespace {
@@ -16,6 +18,7 @@ constexpr int kHighPriority = 40;
 constexpr int kReleasePriority = 35;
 constexpr int kMiddlePriority = 30;
 constexpr int kLowPriority = 20;
+constexpr int kBehindPriority = 10;
 constexpr int kBackgroundNice = 10;
 constexpr std::size_t kTouchedStack = 512 * 1024;
 
@@ -23,6 +26,13 @@ constexpr std::size_t kTouchedStack = 512 * 1024;
 void touch_stack() {
   volatile char stack[kTouchedStack];
   for (std::size_t i = 0; i < sizeof stack; i += 4096) stack[i] = 0;
+}
+
+// Named by the first processor on it; where the kernel does not tell, each processor is a core.
+int core_of(int processor) {
+  std::ifstream siblings("/sys/devices/system/cpu/cpu" + std::to_string(processor) + "/topology/thread_siblings_list");
+  int first = processor;
+  return siblings >> first ? first : processor;
 }
 
 }  // namespace
@@ -39,15 +49,26 @@ std::string lock_memory() {
   return std::strerror(errno);
 }
 
-int processor_from_last(int n) {
+std::vector<int> binding_order(std::span<const int> processors, const std::function<int(int)>& core_of) {
+  std::vector<int> first_of_core;
+  std::vector<int> siblings;
+  std::set<int> taken;
+  for (auto processor = processors.rbegin(); processor != processors.rend(); ++processor) {
+    (taken.insert(core_of(*processor)).second ? first_of_core : siblings).push_back(*processor);
+  }
+  first_of_core.insert(first_of_core.end(), siblings.begin(), siblings.end());
+  return first_of_core;
+}
+
+int processor_to_bind(int n) {
   cpu_set_t allowed;
   CPU_ZERO(&allowed);
   if (::sched_getaffinity(0, sizeof allowed, &allowed) != 0 || CPU_COUNT(&allowed) == 0) return kAnyProcessor;
-  int passed = n % CPU_COUNT(&allowed);
-  for (int cpu = CPU_SETSIZE - 1; cpu >= 0; --cpu) {
-    if (CPU_ISSET(cpu, &allowed) && passed-- == 0) return cpu;
+  std::vector<int> processors;
+  for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
+    if (CPU_ISSET(cpu, &allowed)) processors.push_back(cpu);
   }
-  return kAnyProcessor;
+  return binding_order(processors, core_of)[static_cast<std::size_t>(n) % processors.size()];
 }
 
 std::string set_thread(const char* name, ThreadClass wanted, int processor) {
@@ -70,7 +91,8 @@ std::string set_thread(const char* name, ThreadClass wanted, int processor) {
   parameters.sched_priority = wanted == ThreadClass::fifo_high      ? kHighPriority
                               : wanted == ThreadClass::fifo_release ? kReleasePriority
                               : wanted == ThreadClass::fifo_middle  ? kMiddlePriority
-                                                                    : kLowPriority;
+                              : wanted == ThreadClass::fifo_low     ? kLowPriority
+                                                                    : kBehindPriority;
   const int error = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
   return error == 0 ? pin_refusal : std::strerror(error);
 }

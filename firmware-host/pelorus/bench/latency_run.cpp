@@ -105,7 +105,7 @@ class Chain {
         sync_(ring_),
         threads_{SideThread(prepared("klt", ThreadClass::fifo_middle, realtime, options.config.process.pin ? 1 : -1)),
                  SideThread(prepared("surf", ThreadClass::fifo_low, realtime)),
-                 SideThread(prepared("refine", ThreadClass::normal, realtime))},
+                 SideThread(prepared("refine", ThreadClass::fifo_behind, realtime))},
         publishing_(desk_, {&probe}, timing_, clock_, prepared("publish", ThreadClass::fifo_release, realtime)),
         vision_(
             VisionParts{sync_, rectifier, desk_.results, control_, clock_, nullptr, nullptr, threads_.workers(false)},
@@ -132,7 +132,7 @@ class Chain {
   static std::function<void()> prepared(const char* name, ThreadClass wanted, bool realtime, int processor = -1) {
     return [=] {
       count_allocations_of_this_thread();
-      const int pinned = realtime && processor >= 0 ? processor_from_last(processor) : kAnyProcessor;
+      const int pinned = realtime && processor >= 0 ? processor_to_bind(processor) : kAnyProcessor;
       (void)set_thread(name, realtime ? wanted : ThreadClass::normal, pinned);
     };
   }

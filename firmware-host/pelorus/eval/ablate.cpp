@@ -86,7 +86,7 @@ void switch_off(const std::string& step, PipelineConfig& config) {
 
 Result<RunEvaluation> replay_and_evaluate(const std::string& dataset, const AblateArguments& arguments,
                                           const PipelineConfig& config, const fs::path& folder,
-                                          const std::string& title) {
+                                          const std::string& title, std::string& incomplete) {
   Result<std::unique_ptr<StereoSource>> source = open_source(dataset, arguments.calibration);
   if (!source) return source.error();
   if (Result<Ok> ready = prepare_output_folder(folder, arguments.overwrite); !ready) return ready.error();
@@ -103,6 +103,7 @@ Result<RunEvaluation> replay_and_evaluate(const std::string& dataset, const Abla
   const Result<ReplaySummary> summary = run_replay(*source.value(), options);
   if (!summary) return summary.error();
   if (summary.value().ended_early) return *summary.value().failure;
+  if (summary.value().failure) incomplete = incomplete_text(summary.value());
   return evaluate_run(dataset, arguments.calibration, folder, {});
 }
 
@@ -118,7 +119,8 @@ std::vector<AblationRun> run_all(const std::string& dataset, const AblateArgumen
     switch_off(run.step_off, changed);
     const std::string name = i == 0 ? "all_on" : "without_" + run.step_off;
     const std::string title = name + " (" + std::to_string(i + 1) + "/" + std::to_string(steps.size() + 1) + ")";
-    Result<RunEvaluation> result = replay_and_evaluate(dataset, arguments, changed, folder / name, title);
+    Result<RunEvaluation> result =
+        replay_and_evaluate(dataset, arguments, changed, folder / name, title, run.incomplete);
     if (ReplayInterrupt::requested()) break;
     if (result) {
       run.result = std::move(result.value());
@@ -171,7 +173,9 @@ Result<int> run_verb(const AblateArguments& arguments) {
   if (!runs.front().result->has_truth) {
     return Error{ErrorCode::bad_input, arguments.dataset, "the data set holds no truth to compare with", ""};
   }
-  return 0;
+  if (runs.front().incomplete.empty()) return 0;
+  std::fprintf(stderr, "%s\n", runs.front().incomplete.c_str());
+  return exit_code(ErrorCode::bad_input);
 }
 
 }  // namespace
@@ -191,7 +195,7 @@ Verb add_ablate(CLI::App& app) {
   parser->footer(
       "Exit codes: 0 done, 2 usage, 3 bad input or no truth, 4 calibration, 5 configuration, 6 output, 130 "
       "interrupted.\n"
-      "Damaged pairs are skipped and told of.");
+      "Damaged pairs are skipped and told of; the exit code is 3 then, also for a single one.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
 

@@ -12,7 +12,8 @@ namespace pelorus {
 struct AblationRun {
   std::string step_off;  // empty: every step is on
   std::optional<RunEvaluation> result;
-  std::string failure;  // why there is no result
+  std::string failure;     // why there is no result
+  std::string incomplete;  // what the run went on without; empty: nothing
 };
 
 // One run in figures. Over the bodies: mean of the medians (ME), of the means (since birth) and of the coverages, sums

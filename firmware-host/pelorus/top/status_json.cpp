@@ -73,6 +73,7 @@ void put_counters(const vis_health_t& m, JsonObject& json) {
   json.integer("pairs_captured", m.pairs_captured)
       .integer("results_published", m.results_published)
       .integer("deadline_misses", m.deadline_misses)
+      .integer("steps_shed", m.steps_shed)
       .integer("dropped_in_source", m.dropped_in_source)
       .integer("dropped_ring_full", m.dropped_ring_full)
       .integer("dropped_superseded", m.dropped_superseded)

@@ -144,9 +144,10 @@ void put_counters(const vis_health_t& m, const vis_health_t& before, PageWriter&
   faults.add("losses", m.losses_of_track, before.losses_of_track);
   faults.add("silent", m.camera_timeouts, before.camera_timeouts);
   faults.add("frozen", m.frozen_spells, before.frozen_spells);
-  faults.add("time jumps", m.time_jumps, before.time_jumps);
+  faults.add("jumps", m.time_jumps, before.time_jumps);
+  faults.add("LCM", m.lcm_errors, before.lcm_errors);
   faults.add("late", m.deadline_misses, before.deadline_misses);
-  faults.add("LCM errors", m.lcm_errors, before.lcm_errors);
+  faults.add("shed", m.steps_shed, before.steps_shed);
   page.line("FAULTS", faults.facts, faults.style());
 }
 

@@ -3,20 +3,23 @@
 #include <gtest/gtest.h>
 
 #include "tests/core/pipeline/board_world.h"
+#include "tests/support/held_worker.h"
 
 namespace pelorus {
 namespace {
 
 using test::Board;
 using test::grey;
+using test::HeldWorker;
 using test::plane;
 using test::plane_with_board;
 using test::StereoImages;
 const StereoRig& kRig = test::kBoardRig;
 
-FrameResult step(Pipeline& pipeline, int frame, const StereoImages& images) {
+FrameResult step(Pipeline& pipeline, int frame, const StereoImages& images, Shed shed = Shed::nothing) {
   return pipeline.step(
-      {static_cast<std::uint64_t>(frame), Timestamp{frame * 100'000'000LL}, images.left.view(), images.right.view()});
+      {static_cast<std::uint64_t>(frame), Timestamp{frame * 100'000'000LL}, images.left.view(), images.right.view()},
+      shed);
 }
 
 bool finite(const FrameResult& result) {
@@ -188,6 +191,93 @@ TEST(Pipeline, FramesThatWereMissedAreCountedAndBridged) {
   EXPECT_EQ(result.report.frames_missed, 2);
   EXPECT_TRUE(result.pose_valid);
   EXPECT_LT((result.T_world_cam.translation() - Eigen::Vector3d(0.15, 0, 0)).norm(), 0.01);
+}
+
+TEST(Pipeline, WorkersThatStartAsLateAsTheyMayChangeNothing) {
+  HeldWorker tracking, surf, refine;
+  Pipeline late({}, kRig, {&tracking, &surf, &refine, true});
+  Pipeline at_once({}, kRig);
+  FrameResult result;
+  for (int frame = 0; frame < 8; ++frame) {
+    const StereoImages images = plane_with_board(frame, {});
+    result = step(at_once, frame, images);
+    expect_equal(result, step(late, frame, images));
+  }
+  EXPECT_EQ(result.objects_size, 1);
+}
+
+PipelineConfig without_static_window() {
+  PipelineConfig config;
+  config.steps.static_window = false;
+  return config;
+}
+
+TEST(Pipeline, AWindowThatIsNotReadyIsNotWaitedForAndItsAnswerIsTakenWhenItIs) {
+  HeldWorker refine;
+  Pipeline live({}, kRig, {nullptr, nullptr, &refine, false});
+  Pipeline never(without_static_window(), kRig);
+  for (int frame = 0; frame < 6; ++frame) {
+    const StereoImages images = plane_with_board(frame, {});
+    expect_equal(step(live, frame, images), step(never, frame, images));
+    EXPECT_EQ(refine.done(), frame == 0);
+  }
+  refine.wait();
+  const StereoImages images = plane_with_board(6, {});
+  const FrameResult drawn = step(live, 6, images);
+  EXPECT_EQ(drawn.report[Stage::static_window].outcome, StageOutcome::ok);
+  const FrameResult alone = step(never, 6, images);
+  EXPECT_NE(drawn.T_world_cam.matrix(), alone.T_world_cam.matrix());
+  EXPECT_LT((drawn.T_world_cam.translation() - Eigen::Vector3d(0.18, 0, 0)).norm(), 0.01);
+  EXPECT_FALSE(refine.done()) << "the frame after it is given";
+}
+
+TEST(Pipeline, WhatTheWindowWasGivenBeforeALossIsOfNoUseAfterIt) {
+  HeldWorker refine;
+  Pipeline live({}, kRig, {nullptr, nullptr, &refine, false});
+  Pipeline never(without_static_window(), kRig);
+  for (int frame = 0; frame < 7; ++frame) {
+    if (frame == 4) refine.wait();  // ready with a frame that track was lost after
+    const StereoImages images = frame == 3 || frame == 4 ? grey() : plane(frame);
+    expect_equal(step(live, frame, images), step(never, frame, images));
+  }
+  refine.wait();
+  const FrameResult after = step(live, 7, plane(7));
+  EXPECT_EQ(after.report[Stage::static_window].outcome, StageOutcome::ok);
+  EXPECT_LT((after.T_curr_prev.translation() - Eigen::Vector3d(-0.03, 0, 0)).norm(), 0.001);
+  EXPECT_FALSE(refine.done());  // and the pipeline ends while its last piece is held
+}
+
+TEST(Pipeline, ShedWorkIsLeftOutAndNothingElse) {
+  // Eight frames of everything, then no new points while fewer and fewer are left.
+  Pipeline pipeline({}, kRig);
+  FrameResult result;
+  for (int frame = 0; frame < 8; ++frame) result = step(pipeline, frame, plane_with_board(frame, {}));
+  const int tracked = result.report.points_tracked;
+  for (int frame = 8; frame < 16; ++frame) {
+    result = step(pipeline, frame, plane_with_board(frame, {}), Shed::refill);
+    EXPECT_EQ(result.report.points_started, 0) << frame;
+    EXPECT_EQ(result.report.shed, Shed::refill);
+    EXPECT_EQ(result.state, VisionState::tracking) << frame;
+    EXPECT_EQ(result.objects_size, 1) << frame;
+  }
+  EXPECT_LT(result.report.points_tracked, tracked);
+  result = step(pipeline, 16, plane_with_board(16, {}));
+  EXPECT_GT(result.report.points_started, 0) << "made up for as soon as there is time";
+  EXPECT_LT((result.T_world_cam.translation() - Eigen::Vector3d(0.48, 0, 0)).norm(), 0.01);
+}
+
+TEST(Pipeline, ShedObjectWindowsAreAsIfSwitchedOff) {
+  PipelineConfig without;
+  without.steps.object_window = false;
+  Pipeline shedding({}, kRig);
+  Pipeline switched_off(without, kRig);
+  FrameResult result;
+  for (int frame = 0; frame < 12; ++frame) {
+    const StereoImages images = plane_with_board(frame, {});
+    result = step(shedding, frame, images, Shed::object_window);
+    expect_equal(result, step(switched_off, frame, images, Shed::refill));
+  }
+  EXPECT_EQ(result.objects_size, 1);
 }
 
 }  // namespace

@@ -2,31 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/held_worker.h"
 #include "tests/support/point_world.h"
 
 namespace pelorus {
 namespace {
 
+using test::HeldWorker;
 using test::kRig;
 using test::twist;
-
-// Keeps the piece until it is told to do it.
-class HeldWorker final : public SideWorker {
- public:
-  void start(SideWork work) override {
-    work_ = work;
-    done_ = false;
-  }
-  [[nodiscard]] bool done() const override { return done_; }
-  void wait() override {
-    if (!done_) work_.run(work_.on);
-    done_ = true;
-  }
-
- private:
-  SideWork work_;
-  bool done_ = true;
-};
 
 StageOutcome outcome = StageOutcome::not_run;  // of what was collected last
 

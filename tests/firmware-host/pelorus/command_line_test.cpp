@@ -236,6 +236,17 @@ TEST(CommandLine, AblatePrintsARowPerRun) {
   EXPECT_NE(outcome.text.find("\"step_off\":\"ray_filter\""), std::string::npos) << outcome.text;
 }
 
+TEST(CommandLine, AblateWithADamagedPairSaysSoInItsCode) {
+  const TemporaryFolder folder;
+  const std::filesystem::path dive = folder.path() / "dive";
+  ASSERT_EQ(run_tool("synth " + small_scene(folder, 4) + " --out " + dive.string()).exit_code, 0);
+  EXPECT_EQ(run_tool("ablate " + dive.string() + " --only net_filter").exit_code, 0);
+  std::filesystem::resize_file(dive / "mav0/cam0/data/1600000000000000000.png", 100);
+  const Outcome outcome = run_tool("ablate " + dive.string() + " --only net_filter");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.text.find("finished, but 1 pair"), std::string::npos) << outcome.text;
+}
+
 TEST(CommandLine, ExportWritesEachFormatAndRefusesWhatItCannot) {
   const TemporaryFolder folder;
   const std::string out = (folder.path() / "out").string();

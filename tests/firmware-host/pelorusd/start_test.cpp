@@ -51,6 +51,18 @@ TEST(Start, EachKindOfFailureHasItsExitCodeAndSaysWhere) {
   EXPECT_NE(no_calibration.text.find("source.calibration"), std::string::npos) << no_calibration.text;
 }
 
+TEST(Start, ExchangedPicturesAreRefused) {
+  const TemporaryFolder folder;
+  const std::filesystem::path dive = test::copied_dive(folder);
+  const std::filesystem::path left = dive / "mav0/cam0/data", right = dive / "mav0/cam1/data", aside = dive / "aside";
+  std::filesystem::rename(left, aside);
+  std::filesystem::rename(right, left);
+  std::filesystem::rename(aside, right);
+  const Outcome outcome = start_with("source:\n  path: \"" + dive.string() + "\"\n");
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.text.find("pictures are exchanged"), std::string::npos) << outcome.text;
+}
+
 TEST(Start, AllProblemsOfTheConfigurationAreListedWithTheirLines) {
   const Outcome outcome =
       start_with("source:\n  pth: x\ntiming:\n  latency: 3\nlcm:\n  vehicle: [1]\nxyz:\n", "--check-config");
