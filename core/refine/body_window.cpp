@@ -15,6 +15,9 @@ double robust_weight(double chi2, double scale) {
   return 1.0 / (s * s);
 }
 
+// Where the six unknowns of a frame begin.
+Eigen::Index row_of(int unknown) { return 6 * static_cast<Eigen::Index>(unknown); }
+
 }  // namespace
 
 BodyWindow::BodyWindow(const BodyWindowConfig& config) : config_(config) {
@@ -59,7 +62,7 @@ void BodyWindow::add_inertia() {
   if (frames_.size() <= static_cast<std::size_t>(config_.recent_frames)) return;
   const std::size_t keys = frames_.size() - static_cast<std::size_t>(config_.recent_frames);
   for (std::size_t f = 0; f < keys; ++f) {
-    const int row = 6 * frames_[f].unknown;
+    const Eigen::Index row = row_of(frames_[f].unknown);
     reduced_.S.block<6, 6>(row, row) += config_.key_frame_inertia * own_information_[f];
   }
 }
@@ -75,7 +78,7 @@ double BodyWindow::accumulate_points(const StereoRig& rig) {
     Eigen::Matrix3d V = Eigen::Matrix3d::Zero();
     block.b.setZero();
     block.terms = 0;
-    std::array<int, kMaxWindowFrames> row{};
+    std::array<Eigen::Index, kMaxWindowFrames> row{};
     double weight_sum = 0;
     int count = 0;
     for (const Frame& frame : frames_) {
@@ -100,7 +103,7 @@ double BodyWindow::accumulate_points(const StereoRig& rig) {
       const auto t = static_cast<std::size_t>(block.terms++);
       block.unknown[t] = frame.unknown;
       block.W[t] = w_px * B.transpose() * A;
-      row[t] = 6 * frame.unknown;
+      row[t] = row_of(frame.unknown);
       const Matrix6d own = w_px * B.transpose() * B;
       own_information_[static_cast<std::size_t>(&frame - frames_.data())] += own;
       reduced_.S.block<6, 6>(row[t], row[t]) += own;
@@ -145,10 +148,10 @@ void BodyWindow::accumulate_prior() {
                            adjoint(T_world_obj[1].inverse() * frame[2]->T_world_cam) / dt_bc};
     for (int i = 0; i < 3; ++i) {
       if (frame[i]->unknown < 0) continue;
-      reduced_.g.segment<6>(6 * frame[i]->unknown) += J[i].transpose() * weight.cwiseProduct(r);
+      reduced_.g.segment<6>(row_of(frame[i]->unknown)) += J[i].transpose() * weight.cwiseProduct(r);
       for (int j = 0; j <= i; ++j) {
         if (frame[j]->unknown < 0) continue;
-        reduced_.S.block<6, 6>(6 * frame[i]->unknown, 6 * frame[j]->unknown) +=
+        reduced_.S.block<6, 6>(row_of(frame[i]->unknown), row_of(frame[j]->unknown)) +=
             J[i].transpose() * weight.asDiagonal() * J[j];
       }
     }
@@ -160,23 +163,22 @@ void BodyWindow::apply_update(const Unknowns& xi) {
     if (block.point < 0) break;
     Eigen::Vector3d b = block.b;
     for (std::size_t t = 0; t < static_cast<std::size_t>(block.terms); ++t) {
-      b -= block.W[t].transpose() * xi.segment<6>(6 * block.unknown[t]);
+      b -= block.W[t].transpose() * xi.segment<6>(row_of(block.unknown[t]));
     }
     points_[static_cast<std::size_t>(block.point)].p_body += block.V_inv * b;
   }
   for (Frame& frame : frames_) {
     if (frame.unknown < 0) continue;
-    frame.T_cam_body = orthonormalized(se3_exp(xi.segment<6>(6 * frame.unknown)) * frame.T_cam_body);
+    frame.T_cam_body = orthonormalized(se3_exp(xi.segment<6>(row_of(frame.unknown))) * frame.T_cam_body);
   }
 }
 
 StageOutcome BodyWindow::adjust(const StereoRig& rig) {
-  const std::uint32_t newest = 1u << frames_.back().slot;
   const auto shared = std::count_if(points_.begin(), points_.end(), [&](const BodyPoint& p) {
-    return (p.seen & newest) != 0u && __builtin_popcount(p.seen) >= 2;
+    return (p.seen & newest_bit()) != 0u && __builtin_popcount(p.seen) >= 2;
   });
   if (frames_.size() < 2 || shared < 3) return StageOutcome::too_few_points;
-  const int unknowns = 6 * number_unknowns();
+  const Eigen::Index unknowns = row_of(number_unknowns());
   choose_points();
   weigh_frames();
   StageOutcome outcome = StageOutcome::ok;
@@ -205,16 +207,16 @@ void BodyWindow::measure_covariance() {
   const int before = frames_[frames_.size() - 2].unknown;
   using Columns = Eigen::Matrix<double, Eigen::Dynamic, 12, 0, kMaxWindowUnknowns, 12>;
   Columns columns = Columns::Zero(size, 12);
-  columns.block<6, 6>(6 * last, 0).setIdentity();
-  if (before >= 0) columns.block<6, 6>(6 * before, 6).setIdentity();
+  columns.block<6, 6>(row_of(last), 0).setIdentity();
+  if (before >= 0) columns.block<6, 6>(row_of(before), 6).setIdentity();
   const Columns cov = solver.solve(columns);
   const double scale = std::max(0.01, sigma_scale_ * sigma_scale_);
-  cov_T_cam_body_ = scale * cov.block<6, 6>(6 * last, 0);
+  cov_T_cam_body_ = scale * cov.block<6, 6>(row_of(last), 0);
   cov_H_ = cov_T_cam_body_;
   if (before >= 0) {
     const Matrix6d Ad = adjoint(T_cam_body() * T_cam_body_previous().inverse());
-    const Matrix6d cross = scale * cov.block<6, 6>(6 * last, 6);
-    const Matrix6d previous = scale * cov.block<6, 6>(6 * before, 6);
+    const Matrix6d cross = scale * cov.block<6, 6>(row_of(last), 6);
+    const Matrix6d previous = scale * cov.block<6, 6>(row_of(before), 6);
     cov_H_ += Ad * previous * Ad.transpose() - cross * Ad.transpose() - Ad * cross.transpose();
   }
 }

@@ -86,6 +86,9 @@ class BodyWindow {
     int unknown = -1;     // index of its six unknowns, -1 = held fixed
   };
   void make_room();
+  [[nodiscard]] std::uint32_t newest_bit() const { return 1u << frames_.back().slot; }  // in BodyPoint::seen
+  [[nodiscard]] BodyPoint* point_of(TrackId track);
+  [[nodiscard]] int rank(const BodyPoint& point) const;
   void drop_frame(std::size_t index);
   [[nodiscard]] std::size_t least_useful_key_frame(std::size_t keys) const;
   [[nodiscard]] int number_unknowns();

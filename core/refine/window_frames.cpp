@@ -11,11 +11,10 @@ namespace pelorus {
 // time to its neighbour goes, so that the oldest, which ties the body to its beginning, stays longest.
 std::size_t BodyWindow::least_useful_key_frame(std::size_t keys) const {
   constexpr int kMinShared = 8;
-  const std::uint32_t newest = 1u << frames_.back().slot;
   std::size_t worst = 0;
   int worst_shared = kMinShared;
   for (std::size_t k = 0; k < keys; ++k) {
-    const std::uint32_t both = newest | (1u << frames_[k].slot);
+    const std::uint32_t both = newest_bit() | (1u << frames_[k].slot);
     const auto shared = static_cast<int>(
         std::count_if(points_.begin(), points_.end(), [&](const BodyPoint& p) { return (p.seen & both) == both; }));
     if (shared < worst_shared) {
@@ -71,43 +70,43 @@ void BodyWindow::add_frame(const StereoRig& rig, Timestamp time, const Rigid3& T
   frames_.push_back(frame);
   const Rigid3 T_body_cam = T_cam_body.inverse();
   for (const WindowObservation& observation : observations) {
-    auto place = std::lower_bound(points_.begin(), points_.end(), observation.track,
-                                  [](const BodyPoint& p, TrackId t) { return p.track < t; });
-    if (place == points_.end() || place->track != observation.track) {
-      if (points_.size() == points_.capacity()) {
-        // Full: the point least observed gives way, if the newest frame does not see it.
-        const std::uint32_t newest = 1u << frame.slot;
-        const auto worth = [&](const BodyPoint& p) {
-          return __builtin_popcount(p.seen) + ((p.seen & newest) != 0u ? kMaxWindowFrames : 0);
-        };
-        const auto least =
-            std::min_element(points_.begin(), points_.end(),
-                             [&](const BodyPoint& a, const BodyPoint& b) { return worth(a) < worth(b); });
-        if ((least->seen & newest) != 0u) continue;
-        const bool before = least < place;
-        points_.erase(least);
-        if (before) --place;
-      }
-      BodyPoint point;
-      point.z_px.fill(Eigen::Vector3d::Zero());
-      point.track = observation.track;
-      point.p_body = T_body_cam * rig.triangulate(observation.z_px);
-      place = points_.insert(place, point);
-    }
-    const auto slot = static_cast<std::size_t>(frame.slot);
-    place->seen |= 1u << frame.slot;
-    place->z_px[slot] = observation.z_px;
-    place->sigma_px = observation.sigma_px;
+    BodyPoint* point = point_of(observation.track);
+    if (point == nullptr) continue;
+    if (point->seen == 0) point->p_body = T_body_cam * rig.triangulate(observation.z_px);
+    point->seen |= newest_bit();
+    point->z_px[static_cast<std::size_t>(frame.slot)] = observation.z_px;
+    point->sigma_px = observation.sigma_px;
   }
+}
+
+// A new one when there is none yet; none when all the room is taken by points that the newest frame sees.
+BodyPoint* BodyWindow::point_of(TrackId track) {
+  const auto place_of = [&] {
+    return std::lower_bound(points_.begin(), points_.end(), track,
+                            [](const BodyPoint& p, TrackId t) { return p.track < t; });
+  };
+  auto place = place_of();
+  if (place != points_.end() && place->track == track) return &*place;
+  if (points_.size() == points_.capacity()) {
+    const auto least = std::min_element(points_.begin(), points_.end(),
+                                        [&](const BodyPoint& a, const BodyPoint& b) { return rank(a) < rank(b); });
+    if ((least->seen & newest_bit()) != 0u) return nullptr;
+    points_.erase(least);
+    place = place_of();
+  }
+  BodyPoint point;
+  point.z_px.fill(Eigen::Vector3d::Zero());
+  point.track = track;
+  return &*points_.insert(place, point);
+}
+
+// Longest observed first, those seen now before those not; among equals the track decides: a fixed order.
+int BodyWindow::rank(const BodyPoint& point) const {
+  return __builtin_popcount(point.seen) + ((point.seen & newest_bit()) != 0u ? kMaxWindowFrames : 0);
 }
 
 void BodyWindow::choose_points() {
   std::size_t used = 0;
-  const std::uint32_t newest = 1u << frames_.back().slot;
-  // Longest observed first, those seen now before those not, then by track: a fixed order.
-  const auto rank = [&](const BodyPoint& p) {
-    return __builtin_popcount(p.seen) + ((p.seen & newest) != 0u ? kMaxWindowFrames : 0);
-  };
   int histogram[2 * kMaxWindowFrames + 8] = {};
   for (const BodyPoint& point : points_) histogram[__builtin_popcount(point.seen) >= 2 ? rank(point) : 0]++;
   int threshold = 2 * kMaxWindowFrames + 7;
@@ -130,7 +129,7 @@ void BodyWindow::weigh_frames() {
   double depth_sum_m = 1e-9;
   int depths = 0;
   for (const BodyPoint& point : points_) {
-    if ((point.seen & (1u << newest.slot)) == 0u) continue;
+    if ((point.seen & newest_bit()) == 0u) continue;
     depth_sum_m += (newest.T_cam_body * point.p_body).z();
     ++depths;
   }
