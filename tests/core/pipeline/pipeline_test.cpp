@@ -53,6 +53,17 @@ void expect_equal(const FrameResult& a, const FrameResult& b) {
   EXPECT_EQ(a.report.sigma_px, b.report.sigma_px);
 }
 
+// Both see the board pass; they must agree in every frame, and find it.
+void expect_equal_runs(Pipeline& a, Pipeline& b, int frames, Shed shed_a = Shed::nothing, Shed shed_b = Shed::nothing) {
+  FrameResult result;
+  for (int frame = 0; frame < frames; ++frame) {
+    const StereoImages images = plane_with_board(frame, {});
+    result = step(a, frame, images, shed_a);
+    expect_equal(result, step(b, frame, images, shed_b));
+  }
+  EXPECT_EQ(result.objects_size, 1);
+}
+
 TEST(Pipeline, FollowsTheCameraPastAPlaneAtRest) {
   Pipeline pipeline({}, kRig);
   FrameResult result;
@@ -175,13 +186,7 @@ TEST(Pipeline, GreyFromTheStartIsNeverAGoodMotion) {
 TEST(Pipeline, TwoInstancesGiveIdenticalResults) {
   Pipeline first({}, kRig);
   Pipeline second({}, kRig);
-  FrameResult result;
-  for (int frame = 0; frame < 8; ++frame) {
-    const StereoImages images = plane_with_board(frame, {});
-    result = step(first, frame, images);
-    expect_equal(result, step(second, frame, images));
-  }
-  EXPECT_EQ(result.objects_size, 1);
+  expect_equal_runs(first, second, 8);
 }
 
 TEST(Pipeline, FramesThatWereMissedAreCountedAndBridged) {
@@ -197,13 +202,7 @@ TEST(Pipeline, WorkersThatStartAsLateAsTheyMayChangeNothing) {
   HeldWorker tracking, surf, refine;
   Pipeline late({}, kRig, {&tracking, &surf, &refine, true});
   Pipeline at_once({}, kRig);
-  FrameResult result;
-  for (int frame = 0; frame < 8; ++frame) {
-    const StereoImages images = plane_with_board(frame, {});
-    result = step(at_once, frame, images);
-    expect_equal(result, step(late, frame, images));
-  }
-  EXPECT_EQ(result.objects_size, 1);
+  expect_equal_runs(at_once, late, 8);
 }
 
 PipelineConfig without_static_window() {
@@ -271,13 +270,7 @@ TEST(Pipeline, ShedObjectWindowsAreAsIfSwitchedOff) {
   without.steps.object_window = false;
   Pipeline shedding({}, kRig);
   Pipeline switched_off(without, kRig);
-  FrameResult result;
-  for (int frame = 0; frame < 12; ++frame) {
-    const StereoImages images = plane_with_board(frame, {});
-    result = step(shedding, frame, images, Shed::object_window);
-    expect_equal(result, step(switched_off, frame, images, Shed::refill));
-  }
-  EXPECT_EQ(result.objects_size, 1);
+  expect_equal_runs(shedding, switched_off, 12, Shed::object_window, Shed::refill);
 }
 
 }  // namespace
