@@ -140,8 +140,8 @@ void FrontEnd::bridge_by_surf() {
     lost_descriptors_.push_back(track.descriptor);
     work_of_.push_back(t);
   }
-  const auto gate = temporal_gate(static_cast<float>(config_.bridge_radius_px));
-  const auto matches = surf_matcher_.match(lost_points_, lost_descriptors_, strongest, descriptors_, gate);
+  const auto radius_px = static_cast<float>(config_.bridge_radius_px);
+  const auto matches = surf_matcher_.match(lost_points_, lost_descriptors_, strongest, descriptors_, radius_px);
   std::size_t kept = 0;  // matches come ordered by `first`, so work_of_ can be packed in place
   for (const SurfMatch& match : matches) {
     const auto lost = static_cast<std::size_t>(match.first);

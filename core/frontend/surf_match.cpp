@@ -9,28 +9,6 @@
 
 namespace pelorus {
 
-bool SurfGate::admits(const SurfPoint& point, const SurfPoint& partner) const {
-  const float du = partner.u_px - point.u_px;
-  const float dv = partner.v_px - point.v_px;
-  return du >= min_du_px && du <= max_du_px && dv >= min_dv_px && dv <= max_dv_px &&
-         du * du + dv * dv <= radius_px * radius_px;
-}
-
-SurfGate stereo_gate(float row_band_px, float min_disparity_px, float max_disparity_px) {
-  SurfGate gate;
-  gate.min_du_px = -max_disparity_px;
-  gate.max_du_px = -min_disparity_px;
-  gate.min_dv_px = -row_band_px;
-  gate.max_dv_px = row_band_px;
-  return gate;
-}
-
-SurfGate temporal_gate(float radius_px) {
-  SurfGate gate;
-  gate.radius_px = radius_px;
-  return gate;
-}
-
 void SurfMatcher::Nearest::offer(float square, std::int32_t candidate) {
   if (square < best || (square == best && candidate < index)) {
     second_best = best;
@@ -51,7 +29,7 @@ SurfMatcher::SurfMatcher(const SurfMatchConfig& config) : config_(config) {
   blocks_.resize(room / kBlockDescriptors + 3);  // each sign may leave one block half full
 }
 
-// Ordered by Laplacian sign, then row, so that whole blocks fall outside a gate.
+// Ordered by Laplacian sign, then row, so that whole blocks lie out of reach.
 void SurfMatcher::fill_blocks(std::span<const SurfPoint> second, std::span<const SurfDescriptor> descriptors) {
   order_.resize(second.size());
   std::iota(order_.begin(), order_.end(), 0);
@@ -77,18 +55,20 @@ void SurfMatcher::fill_blocks(std::span<const SurfPoint> second, std::span<const
 }
 
 void SurfMatcher::offer_all(std::span<const SurfPoint> first, std::span<const SurfDescriptor> descriptors,
-                            std::span<const SurfPoint> second, const SurfGate& gate) {
+                            std::span<const SurfPoint> second, float radius_px) {
   BlockDistances squares{};
   for (std::size_t i = 0; i < first.size(); ++i) {
-    const float min_v = first[i].v_px + std::max(gate.min_dv_px, -gate.radius_px);
-    const float max_v = first[i].v_px + std::min(gate.max_dv_px, gate.radius_px);
+    const float min_v = first[i].v_px - radius_px;
+    const float max_v = first[i].v_px + radius_px;
     for (std::size_t b = 0; b < blocks_size_; ++b) {
       const Block& block = blocks_[b];
       if (block.laplacian != first[i].laplacian || block.last_v_px < min_v || block.first_v_px > max_v) continue;
       squared_distances(descriptors[i], block.descriptors, squares);
       for (std::size_t k = 0; k < block.size; ++k) {
         const auto j = static_cast<std::size_t>(block.index[k]);
-        if (!gate.admits(first[i], second[j])) continue;
+        const float du = second[j].u_px - first[i].u_px;
+        const float dv = second[j].v_px - first[i].v_px;
+        if (du * du + dv * dv > radius_px * radius_px) continue;
         of_first_[i].offer(squares[k], static_cast<std::int32_t>(j));
         of_second_[j].offer(squares[k], static_cast<std::int32_t>(i));
       }
@@ -99,8 +79,7 @@ void SurfMatcher::offer_all(std::span<const SurfPoint> first, std::span<const Su
 std::span<const SurfMatch> SurfMatcher::match(std::span<const SurfPoint> first,
                                               std::span<const SurfDescriptor> first_descriptors,
                                               std::span<const SurfPoint> second,
-                                              std::span<const SurfDescriptor> second_descriptors,
-                                              const SurfGate& gate) {
+                                              std::span<const SurfDescriptor> second_descriptors, float radius_px) {
   PELORUS_CHECK(first_descriptors.size() >= first.size() && second_descriptors.size() >= second.size(),
                 "a descriptor for every point");
   const auto room = static_cast<std::size_t>(config_.max_points);
@@ -109,7 +88,7 @@ std::span<const SurfMatch> SurfMatcher::match(std::span<const SurfPoint> first,
   of_first_.assign(first.size(), {});
   of_second_.assign(second.size(), {});
   fill_blocks(second, second_descriptors);
-  offer_all(first, first_descriptors, second, gate);
+  offer_all(first, first_descriptors, second, radius_px);
   matches_.clear();
   for (std::size_t i = 0; i < first.size(); ++i) {
     const Nearest& nearest = of_first_[i];

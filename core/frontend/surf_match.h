@@ -1,6 +1,6 @@
 #pragma once
 // Correspondences between two sets of SURF points: mutual nearest neighbours in descriptor distance that pass the
-// ratio test (Lowe 2004), among pairs of equal Laplacian sign (Bay et al. 2008, section 5) inside an optional gate.
+// ratio test (Lowe 2004), among pairs of equal Laplacian sign (Bay et al. 2008, section 5) within a radius.
 // Equal distances are decided by the lower index: results depend on nothing but the input. Thread-bound.
 // O(first * second) distances at most; no allocation after construction.
 
@@ -14,22 +14,6 @@
 #include "core/kernels/descriptor_distance.h"
 
 namespace pelorus {
-
-// Where the partner of a point may lie: bounds on (partner - point), px; and a radius about it.
-struct SurfGate {
-  float min_du_px = -std::numeric_limits<float>::infinity();
-  float max_du_px = std::numeric_limits<float>::infinity();
-  float min_dv_px = -std::numeric_limits<float>::infinity();
-  float max_dv_px = std::numeric_limits<float>::infinity();
-  float radius_px = std::numeric_limits<float>::infinity();
-
-  [[nodiscard]] bool admits(const SurfPoint& point, const SurfPoint& partner) const;
-};
-
-// Left to right of a rectified pair: same row within the band, disparity u_left - u_right in the range.
-[[nodiscard]] SurfGate stereo_gate(float row_band_px, float min_disparity_px, float max_disparity_px);
-// Frame to frame.
-[[nodiscard]] SurfGate temporal_gate(float radius_px);
 
 struct SurfMatchConfig {
   float max_ratio = 0.8F;     // of the best distance to the second best
@@ -48,12 +32,12 @@ class SurfMatcher {
  public:
   explicit SurfMatcher(const SurfMatchConfig& config);
 
-  // Ordered by `first`; valid until the next call. Sets beyond max_points are cut.
+  // Partners lie within `radius_px` of each other's places. Ordered by `first`; valid until the next call. Sets beyond
+  // max_points are cut.
   [[nodiscard]] std::span<const SurfMatch> match(std::span<const SurfPoint> first,
                                                  std::span<const SurfDescriptor> first_descriptors,
                                                  std::span<const SurfPoint> second,
-                                                 std::span<const SurfDescriptor> second_descriptors,
-                                                 const SurfGate& gate);
+                                                 std::span<const SurfDescriptor> second_descriptors, float radius_px);
 
  private:
   struct Nearest {
@@ -75,7 +59,7 @@ class SurfMatcher {
 
   void fill_blocks(std::span<const SurfPoint> second, std::span<const SurfDescriptor> descriptors);
   void offer_all(std::span<const SurfPoint> first, std::span<const SurfDescriptor> descriptors,
-                 std::span<const SurfPoint> second, const SurfGate& gate);
+                 std::span<const SurfPoint> second, float radius_px);
 
   SurfMatchConfig config_;
   std::vector<Nearest> of_first_;

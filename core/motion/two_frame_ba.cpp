@@ -77,6 +77,18 @@ void accumulate(const StereoRig& rig, const Rigid3& H, const PointPair& pair, do
 TwoFrameBa::TwoFrameBa(const TwoFrameBaConfig& config, int capacity) : config_(config) {
   used_.reserve(static_cast<std::size_t>(capacity));
   z_hat_px_.reserve(static_cast<std::size_t>(capacity));
+  matches_.reserve(static_cast<std::size_t>(capacity));
+}
+
+void TwoFrameBa::align(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> members, MotionFit& fit) {
+  matches_.clear();
+  for (const PointIndex m : members) {
+    const PointPair& pair = pairs[static_cast<std::size_t>(m)];
+    if (transfer_chi2(rig, fit.H_curr_prev, pair) < kChi2_3dof_999) {
+      matches_.push_back({pair.prev.p_cam, pair.curr.p_cam, 1.0});
+    }
+  }
+  if (const auto aligned = fit_rigid(matches_)) fit.H_curr_prev = *aligned;
 }
 
 MotionFit TwoFrameBa::run(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> members,
@@ -123,6 +135,7 @@ MotionFit TwoFrameBa::run(const StereoRig& rig, PointPairs pairs, std::span<cons
   fit.cov_H = normal.information.inverse() * std::max(0.01, variance_scale);
   const double sigma_px = pairs[static_cast<std::size_t>(used_.front())].sigma_px;
   fit.rms_px = sigma_px * std::sqrt(variance_scale);
+  if (!config_.adjust) align(rig, pairs, members, fit);
   for (const PointIndex m : members) {
     fit.support += transfer_chi2(rig, fit.H_curr_prev, pairs[static_cast<std::size_t>(m)]) < kChi2_3dof_999;
   }

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "core/geometry/rigid_fit.h"
 #include "core/model/stage_data.h"
 
 namespace pelorus {
@@ -17,6 +18,8 @@ struct TwoFrameBaConfig {
   double robust_chi2 = 20.0;
   double converged_update = 1e-8;  // norm of the twist update [m, rad]
   int max_points = 1000;           // evenly strided subset above it: bounds the cost per frame
+  // Off, for ablation: the paper's alignment of the two clouds (1) of the points that the adjustment finds to agree.
+  bool adjust = true;
 };
 
 struct MotionFit {
@@ -36,8 +39,11 @@ class TwoFrameBa {
                               const Rigid3& H_start);
 
  private:
+  void align(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> members, MotionFit& fit);
+
   TwoFrameBaConfig config_;
   std::vector<PointIndex> used_;
+  std::vector<PointMatch> matches_;          // of the alignment
   std::vector<Eigen::Vector3d> z_hat_px_;  // corrected prev measurement of each used point: its structure
 };
 

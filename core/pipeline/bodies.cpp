@@ -16,19 +16,25 @@ PipelineWorkers with_stand_in(PipelineWorkers workers, SideWorker& stand_in) {
   return workers;
 }
 
+// The switch of a step reaches everything that has its motion from it.
+PipelineConfig switched(PipelineConfig config) {
+  config.two_frame_ba.adjust = config.steps.bundle_adjustment;
+  return config;
+}
+
 }  // namespace
 
 Pipeline::State::State(const PipelineConfig& c, const StereoRig& r, const PipelineWorkers& w)
-    : config(c),
+    : config(switched(c)),
       rig(r),
       workers(with_stand_in(w, inline_worker)),
       front_end(c.front_end, r, {*workers.tracking, *workers.surf}),
-      grouping(c.grouping, c.seed_points, c.two_frame_ba, c.front_end.max_points),
-      moving_grouping(c.grouping, c.seed_points, c.two_frame_ba, c.front_end.max_points),
-      two_frame_ba(c.two_frame_ba, c.front_end.max_points),
+      grouping(c.grouping, c.seed_points, config.two_frame_ba, c.front_end.max_points),
+      moving_grouping(c.grouping, c.seed_points, config.two_frame_ba, c.front_end.max_points),
+      two_frame_ba(config.two_frame_ba, c.front_end.max_points),
       net(c.front_end.max_points),
       ego_window(c.static_window, r, c.front_end.max_points, c.ego_motion.point_gate_chi2, *workers.refine),
-      registry(c.registry, c.membership, c.identity, c.merge, c.reidentification, c.object_window, c.two_frame_ba,
+      registry(c.registry, c.membership, c.identity, c.merge, c.reidentification, c.object_window, config.two_frame_ba,
                c.front_end.max_points),
       sigma_px(c.ego_motion.start_sigma_px) {
   const auto points = static_cast<std::size_t>(c.front_end.max_points);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/rigid_fit.h"
 #include "core/motion/stereo_transfer.h"
 #include "core/pipeline/state.h"
 
@@ -97,23 +96,8 @@ void Pipeline::State::find_world() {
   }
   for (const PointIndex i : group.members) roles[static_cast<std::size_t>(i)] = PointRole::fixed;
   collect_fixed();
-  ego = fit_motion(fixed, group.H_curr_prev);
+  ego = two_frame_ba.run(rig, pairs, fixed, group.H_curr_prev);
   ego_outcome = ego.outcome == StageOutcome::not_converged ? StageOutcome::ok : ego.outcome;
-}
-
-MotionFit Pipeline::State::fit_motion(std::span<const PointIndex> members, const Rigid3& H_start) {
-  MotionFit fit = two_frame_ba.run(rig, pairs, members, H_start);
-  if (config.steps.bundle_adjustment || fit.outcome == StageOutcome::too_few_points) return fit;
-  // Ablation: the paper's alignment of the two clouds, on the points that agree.
-  std::vector<PointMatch> matches;
-  for (const PointIndex i : members) {
-    const PointPair& pair = pairs[static_cast<std::size_t>(i)];
-    if (transfer_chi2(rig, fit.H_curr_prev, pair) < kChi2_3dof_999) {
-      matches.push_back({pair.prev.p_cam, pair.curr.p_cam, 1.0});
-    }
-  }
-  if (const auto aligned = fit_rigid(matches)) fit.H_curr_prev = *aligned;
-  return fit;
 }
 
 void Pipeline::State::split_static_from_moving() {
@@ -164,7 +148,7 @@ void Pipeline::State::filter_static_and_moving() {
     ego_outcome = StageOutcome::too_few_points;
     return;
   }
-  const MotionFit refined = fit_motion(fixed, ego.H_curr_prev);
+  const MotionFit refined = two_frame_ba.run(rig, pairs, fixed, ego.H_curr_prev);
   if (refined.outcome != StageOutcome::degenerate) ego = refined;
   if (config.steps.ray_filter) {
     (void)ray_filter(rig, net, pairs, chi2_static, config.ray_filter, roles);

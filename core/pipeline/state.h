@@ -29,7 +29,6 @@ struct Pipeline::State {
   void publish();
 
   [[nodiscard]] bool ego_found() const { return ego_outcome == StageOutcome::ok; }
-  [[nodiscard]] MotionFit fit_motion(std::span<const PointIndex> members, const Rigid3& H_start);
   void collect_fixed();
   [[nodiscard]] RegistrySteps registry_steps() const;
   void learn_sigma(double rate);

@@ -36,7 +36,6 @@ void list(FieldList& f, FrontEndConfig& c) {
   f.add("max_points_per_object", c.max_points_per_object, 4, 1000);
   f.add("forward_backward_px", c.forward_backward_px, 0.01, 10);
   f.add("min_disparity_px", c.min_disparity_px, 0.1, 100);
-  f.add("max_disparity_change_px", c.max_disparity_change_px, 0.1, 200);
   f.add("reference_agreement_px", c.reference_agreement_px, 0.01, 10);
   f.add("reference_min_ncc", c.reference_min_ncc, 0, 1);
   f.add("slope_radius_px", c.slope_radius_px, 1, 1000);

@@ -96,7 +96,7 @@ Verb add_synth(CLI::App& app) {
   parser
       ->add_option("SCENE", options->scene,
                    "Scene file, or the name of a shipped scene: paper, static, "
-                   "appear_occlude_stop, large_body, abreast, turbid, shapes")
+                   "appear_occlude_stop, large_body, abreast, turbid, turbid_static, five, shapes")
       ->required();
   parser->add_option("--out", options->out, "Folder to write; absent or empty, or see --overwrite")
       ->required()

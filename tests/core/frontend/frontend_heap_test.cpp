@@ -108,7 +108,7 @@ TEST_F(FrontEndHeap, SurfAndItsMatcherTakeNone) {
     EXPECT_EQ(test::allocations_in([&] {
                 const auto again = surf.detect(scenery_.left(1));
                 surf.describe(again, now);
-                matches = matcher.match(points, before, again, now, temporal_gate(40.0F)).size();
+                matches = matcher.match(points, before, again, now, 40.0F).size();
               }),
               0);
     EXPECT_GT(matches, 50U);

@@ -42,8 +42,8 @@ SurfDescriptor near(const SurfDescriptor& d, float noise, std::mt19937& rng) {
   return unit(n);
 }
 
-auto matches_of(SurfMatcher& matcher, const Set& a, const Set& b, const SurfGate& gate = {}) {
-  const auto found = matcher.match(a.points, a.descriptors, b.points, b.descriptors, gate);
+auto matches_of(SurfMatcher& matcher, const Set& a, const Set& b, float radius_px = 1e6F) {
+  const auto found = matcher.match(a.points, a.descriptors, b.points, b.descriptors, radius_px);
   return std::vector<SurfMatch>(found.begin(), found.end());
 }
 
@@ -107,25 +107,7 @@ TEST(SurfMatch, OppositeLaplaciansNeverMatch) {
   EXPECT_EQ(matches_of(matcher, a, b).size(), 1U);
 }
 
-TEST(SurfMatch, TheStereoGateKeepsToTheRowAndTheDisparityRange) {
-  std::mt19937 rng(5);
-  const SurfDescriptor d = random_descriptor(rng);
-  SurfMatcher matcher({});
-  const auto matched = [&](float u_right, float v_right) {
-    Set left;
-    Set right;
-    left.add(100, 50, d);
-    right.add(u_right, v_right, d);
-    return matches_of(matcher, left, right, stereo_gate(1.5F, 2.0F, 60.0F)).size();
-  };
-  EXPECT_EQ(matched(70, 51), 1U);
-  EXPECT_EQ(matched(70, 52), 0U);
-  EXPECT_EQ(matched(99, 50), 0U);   // disparity 1
-  EXPECT_EQ(matched(110, 50), 0U);  // behind infinity
-  EXPECT_EQ(matched(30, 50), 0U);   // disparity 70
-}
-
-TEST(SurfMatch, TheTemporalGateIsADiscAndLetsAFarTwinPass) {
+TEST(SurfMatch, PartnersLieWithinADiscAndAFarTwinIsNoRival) {
   std::mt19937 rng(6);
   const SurfDescriptor d = random_descriptor(rng);
   Set a;
@@ -134,9 +116,9 @@ TEST(SurfMatch, TheTemporalGateIsADiscAndLetsAFarTwinPass) {
   b.add(106, 108, near(d, 0.01F, rng));
   b.add(200, 100, near(d, 0.01F, rng));
   SurfMatcher matcher({});
-  EXPECT_EQ(matches_of(matcher, a, b, temporal_gate(10.5F)).size(), 1U);
-  EXPECT_EQ(matches_of(matcher, a, b, temporal_gate(9.5F)).size(), 0U);
-  EXPECT_EQ(matches_of(matcher, a, b).size(), 0U);  // without the gate the twin is a rival
+  EXPECT_EQ(matches_of(matcher, a, b, 10.5F).size(), 1U);
+  EXPECT_EQ(matches_of(matcher, a, b, 9.5F).size(), 0U);
+  EXPECT_EQ(matches_of(matcher, a, b).size(), 0U);  // in a larger one the twin is a rival
 }
 
 TEST(SurfMatch, EmptySetsGiveNoMatches) {

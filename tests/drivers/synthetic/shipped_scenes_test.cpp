@@ -68,7 +68,7 @@ bool apart(const Body& a, const Body& b, double t_s, double margin_m) {
 }
 
 TEST(ShippedScenes, BodiesNeverTouchEachOtherOrTheGround) {
-  for (const char* name : {"paper", "appear_occlude_stop", "large_body", "abreast", "turbid", "shapes"}) {
+  for (const char* name : {"paper", "appear_occlude_stop", "large_body", "abreast", "turbid", "five", "shapes"}) {
     const Scene scene = shipped(name);
     const Seafloor floor(scene.seabed, scene.seed);
     for (int frame = 0; frame < scene.frames; frame += 5) {

@@ -141,7 +141,7 @@ TEST(ConfigFields, HoldEveryMemberOfEveryStruct) {
       {"seed_points", member_count<SeedPointsConfig>()},
       {"grouping", member_count<GroupingConfig>() - 1 + kProposal},
       {"static_group", member_count<StaticGroupConfig>()},
-      {"two_frame_ba", member_count<TwoFrameBaConfig>()},
+      {"two_frame_ba", member_count<TwoFrameBaConfig>() - 1},  // adjust: steps.bundle_adjustment
       {"repartition", member_count<RepartitionConfig>()},
       {"ray_filter", member_count<RayFilterConfig>()},
       {"ego_motion", member_count<EgoMotionConfig>()},
