@@ -21,6 +21,12 @@ struct SourcePair {
   Image right;
 };
 
+// Pairs that a recording lacks.
+struct MissingPairs {
+  std::uint64_t count = 0;
+  Timestamp first;  // capture time of the first, exact where one of its images is there; when count > 0
+};
+
 class StereoSource {
  public:
   virtual ~StereoSource() = default;
@@ -30,6 +36,8 @@ class StereoSource {
   [[nodiscard]] virtual std::size_t pair_count() const = 0;
   // Fills `pair` (its storage is reused) and returns true; false at the end of the data.
   [[nodiscard]] virtual Result<bool> next(SourcePair& pair) = 0;
+  // Lacking before the last pair that next() gave; after the last of all, at the end of the recording too.
+  [[nodiscard]] virtual MissingPairs missing_pairs() const { return {}; }
   // One line per fact a user must know: calibration origin, pairs dropped at opening and why.
   [[nodiscard]] virtual std::string description() const = 0;
 };

@@ -48,6 +48,8 @@ class RecordedSource final : public StereoSource {
     return true;
   }
 
+  MissingPairs missing_pairs() const override { return missing_among(pairing_, next_); }
+
   std::string description() const override {
     std::string text = recording_.format + " " + recording_.folder.string() + ": " + pairs_text(pairing_.pairs.size());
     if (pairing_.period_ns > 0) text += ", " + std::to_string(pairing_.period_ns / 1'000'000) + " ms apart";
@@ -58,9 +60,7 @@ class RecordedSource final : public StereoSource {
     if (lost > 0)
       text += "\nlost: " + pairs_text(lost) + " (" + std::to_string(pairing_.lost_left) + " without left image, " +
               std::to_string(pairing_.lost_right) + " without right image, " + std::to_string(pairing_.lost_both) +
-              " never recorded)";
-    if (pairing_.lost_left + pairing_.lost_right > 0)
-      text += ", the first at " + std::to_string(pairing_.first_lost.ns) + " ns";
+              " never recorded), the first at " + std::to_string(pairing_.first_lost.ns) + " ns";
     if (pairing_.longest_gap > kBridgedGap)
       text += "\nwarning: " + std::to_string(pairing_.longest_gap) + " pairs in a row are lost after " +
               std::to_string(pairing_.longest_gap_after.ns) + " ns; motion over such a gap is a guess";

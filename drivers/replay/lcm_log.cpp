@@ -115,6 +115,7 @@ class LcmLogSource final : public StereoSource {
     if (Result<> sizes = check_sizes(index, pair); !sizes) return sizes.error();
     return true;
   }
+  [[nodiscard]] MissingPairs missing_pairs() const override { return missing_among(pairing_, next_); }
   [[nodiscard]] std::string description() const override {
     std::string text = "LCM log " + path_ + ", channel " + channel_ + ": " + pairs_text(events_.size());
     if (pairing_.period_ns > 0) text += ", " + std::to_string(pairing_.period_ns / 1'000'000) + " ms apart";

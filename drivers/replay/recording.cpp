@@ -64,6 +64,7 @@ class Pairer {
     if (any_) {
       const std::uint64_t step = periods_between(last_, time, out_.period_ns);
       seq_ += step;
+      if (step > 1) note_loss(Timestamp{last_.ns + out_.period_ns});
       out_.lost_both += static_cast<std::size_t>(step - 1);
     }
     any_ = true;
@@ -72,8 +73,12 @@ class Pairer {
 
   void single(Timestamp time, std::size_t& lost) {
     advance(time);
-    if (out_.lost_left + out_.lost_right == 0) out_.first_lost = time;
+    note_loss(time);
     ++lost;
+  }
+
+  void note_loss(Timestamp time) {
+    if (out_.lost_left + out_.lost_right + out_.lost_both == 0) out_.first_lost = time;
   }
 
   void pair(const RecordedImage& left, const RecordedImage& right) {
@@ -109,6 +114,13 @@ Result<Pairing> pair_images(const Recording& recording) {
                "no left image (" + std::to_string(recording.left.size()) + ") has a right one (" +
                    std::to_string(recording.right.size()) + ") of its time",
                "the cameras' time stamps must agree to 5 ms and a quarter of the frame period"};
+}
+
+MissingPairs missing_among(const Pairing& pairing, std::size_t passed) {
+  if (passed == 0) return {};
+  const std::uint64_t lost = passed == pairing.pairs.size() ? pairing.lost_left + pairing.lost_right + pairing.lost_both
+                                                            : pairing.pairs[passed - 1].seq + 1 - passed;
+  return {lost, pairing.first_lost};
 }
 
 Result<> check_order(const std::vector<RecordedImage>& images, const OrderCure& cure,

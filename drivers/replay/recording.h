@@ -11,6 +11,7 @@
 #include "core/base/result.h"
 #include "core/base/time.h"
 #include "core/geometry/stereo_calibration.h"
+#include "drivers/stereo_source.h"
 
 namespace pelorus {
 
@@ -43,7 +44,7 @@ struct Pairing {
   std::size_t lost_left = 0;    // pairs lost because the left image is missing
   std::size_t lost_right = 0;   // ... the right one
   std::size_t lost_both = 0;    // ... or both, seen as a step in time
-  Timestamp first_lost;         // of the image whose partner is missing, when lost_left or lost_right
+  Timestamp first_lost;         // of the image whose partner is missing, or one period after the pair before
   std::size_t longest_gap = 0;  // pairs lost in a row
   Timestamp longest_gap_after;  // time stamp of the pair before that gap
 };
@@ -57,6 +58,9 @@ struct OrderCure {
   std::string duplicate;
   std::string earlier;
 };
+
+// The pairs lost before the last of the first `passed` pairs; when these are all, those lost after them too.
+[[nodiscard]] MissingPairs missing_among(const Pairing& pairing, std::size_t passed);
 
 // Refuses unsorted and duplicate times. `place(i)` names the file and line of image i.
 [[nodiscard]] Result<> check_order(const std::vector<RecordedImage>& images, const OrderCure& cure,

@@ -37,6 +37,7 @@ struct ConvertArguments {
   std::string input;
   std::string out;
   CalibrationFormat format = CalibrationFormat::opencv;
+  bool overwrite = false;
 };
 
 constexpr double degrees(double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; }
@@ -212,7 +213,9 @@ Result<int> run_convert(const ConvertArguments& arguments) {
     if (!source) return source.error();
     loaded.value().calibration = source.value()->calibration();
   }
-  if (auto written = write_calibration(loaded.value().calibration, arguments.format, arguments.out); !written)
+  if (auto written =
+          write_calibration(loaded.value().calibration, arguments.format, arguments.out, arguments.overwrite);
+      !written)
     return written.error();
   std::printf("calibration %s\n", loaded.value().origin.c_str());
   for (const std::string& assumption : loaded.value().assumptions) std::printf("assumed     %s\n", assumption.c_str());
@@ -252,6 +255,7 @@ Verb add_calib(CLI::App& app) {
       ->required()
       ->transform(CLI::CheckedTransformer(formats));
   convert->add_option("--out", convert_arguments->out, "File or folder to write")->required();
+  convert->add_flag("--overwrite", convert_arguments->overwrite, "Replace what is there under this name");
   convert->footer("Exit codes: 0 written, 2 usage, 4 calibration, 6 input/output.");
   return {parser, [check, check_arguments, convert_arguments] {
             return check->parsed() ? run_check(*check_arguments) : run_convert(*convert_arguments);

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "drivers/synthetic/scene_file.h"
 #include "firmware-host/pelorus/eval/eval_table.h"
 #include "firmware-host/pelorus/progress_bar.h"
 #include "firmware-host/pelorus/replay/replay_dive.h"
@@ -65,7 +66,10 @@ Result<int> run_verb(const DemoArguments& arguments) {
   const fs::path folder(arguments.out);
   const fs::path dataset = folder / "dataset";
   const fs::path results = folder / "results";
-  if (Result<std::string> scene = find_scene(arguments.scene); !scene) return scene.error();
+  // The scene first: one that cannot be read must not leave a folder behind.
+  const Result<std::string> scene = find_scene(arguments.scene);
+  if (!scene) return scene.error();
+  if (const auto loaded = synthetic::load_scene(scene.value()); !loaded) return loaded.error();
   if (Result<Ok> checked = check_folder(folder); !checked) return checked.error();
   const ReplayInterrupt interrupt;
   std::printf("Rendering the scene '%s': a stereo dive with exact truth ...\n", arguments.scene.c_str());

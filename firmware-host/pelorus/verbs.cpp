@@ -12,6 +12,7 @@
 #include "firmware-host/pelorus/report/report.h"
 #include "firmware-host/pelorus/synth/synth.h"
 #ifdef PELORUS_WITH_LCM
+#include "firmware-host/pelorus/command/service_command.h"
 #include "firmware-host/pelorus/top/top.h"
 #endif
 
@@ -25,6 +26,9 @@ std::vector<Verb> add_verbs(CLI::App& app) {
   verbs.push_back(add_bench(app));
   verbs.push_back(add_calib(app));
   verbs.push_back(add_can(app));
+#ifdef PELORUS_WITH_LCM
+  verbs.push_back(add_command(app));
+#endif
   verbs.push_back(add_demo(app));
   verbs.push_back(add_doctor(app));
   verbs.push_back(add_replay(app));

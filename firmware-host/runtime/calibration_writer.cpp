@@ -2,11 +2,11 @@
 
 #include <array>
 #include <cstdio>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "core/geometry/rectifier.h"
+#include "firmware-host/runtime/partial_file.h"
 
 namespace pelorus {
 namespace {
@@ -60,17 +60,31 @@ const char* lens_name(LensKind lens, CalibrationFormat format) {
   return "none";
 }
 
-Result<> write_file(const fs::path& file, const std::string& content) {
-  std::error_code failed;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), failed);
-  std::ofstream out(file, std::ios::binary);
-  out << content;
-  out.close();
-  if (out) return Ok{};
-  return Error{ErrorCode::io, file.string(), "cannot be written", "check the folder's permissions and free space"};
+struct TextFile {
+  fs::path path;
+  std::string text;
+};
+using TextFiles = std::vector<TextFile>;
+
+// None gets its name before all are written.
+Result<> write_files(const TextFiles& files, bool overwrite) {
+  std::vector<PartialFile> written;
+  for (const TextFile& file : files) {
+    std::error_code failed;
+    if (file.path.has_parent_path()) fs::create_directories(file.path.parent_path(), failed);
+    Result<PartialFile> partial = PartialFile::create(file.path, overwrite);
+    if (!partial) return partial.error();
+    written.push_back(std::move(partial.value()));
+    written.back().write(file.text);
+    if (Result<> flushed = written.back().flush(); !flushed) return flushed;
+  }
+  for (PartialFile& file : written) {
+    if (Result<> finished = file.finish(); !finished) return finished;
+  }
+  return Ok{};
 }
 
-Result<> write_opencv(const StereoCalibration& c, const fs::path& out) {
+Result<TextFiles> opencv_files(const StereoCalibration& c, const fs::path& out) {
   const auto matrix = [](const std::string& name, int rows, int cols, const std::vector<double>& values) {
     return name + ": !!opencv-matrix\n   rows: " + std::to_string(rows) + "\n   cols: " + std::to_string(cols) +
            "\n   dt: d\n   data: " + list(values) + "\n";
@@ -95,7 +109,7 @@ Result<> write_opencv(const StereoCalibration& c, const fs::path& out) {
   }
   text += matrix("R", 3, 3, rows_of(c.T_right_left.linear()));
   text += matrix("T", 3, 1, rows_of(c.T_right_left.translation()));
-  return write_file(out, text);
+  return TextFiles{{out, text}};
 }
 
 std::string rows_text(const Rigid3& T, const std::string& indent) {
@@ -104,7 +118,7 @@ std::string rows_text(const Rigid3& T, const std::string& indent) {
   return text;
 }
 
-Result<> write_kalibr(const StereoCalibration& c, const fs::path& out) {
+Result<TextFiles> kalibr_files(const StereoCalibration& c, const fs::path& out) {
   std::string text;
   for (int side = 0; side < 2; ++side) {
     const CameraIntrinsics& camera = side == 0 ? c.left : c.right;
@@ -120,13 +134,14 @@ Result<> write_kalibr(const StereoCalibration& c, const fs::path& out) {
     if (c.body_known) text += "  T_cam_imu:\n" + rows_text(T_camera_body, "  ");
     if (side == 1) text += "  T_cn_cnm1:\n" + rows_text(c.T_right_left, "  ");
   }
-  return write_file(out, text);
+  return TextFiles{{out, text}};
 }
 
-Result<> write_ros(const StereoCalibration& c, const fs::path& out) {
+Result<TextFiles> ros_files(const StereoCalibration& c, const fs::path& out) {
   const auto rectifier = Rectifier::create(c, out.string());
   if (!rectifier) return rectifier.error();
   const StereoRig& rig = rectifier.value().rig();
+  TextFiles files;
   for (int side = 0; side < 2; ++side) {
     const CameraIntrinsics& camera = side == 0 ? c.left : c.right;
     const Eigen::Matrix3d& R = side == 0 ? rectifier.value().R_cam_left() : rectifier.value().R_cam_r_right();
@@ -146,12 +161,13 @@ Result<> write_ros(const StereoCalibration& c, const fs::path& out) {
     text += matrix("distortion_coefficients", 1, static_cast<int>(k.size()), k);
     text += matrix("rectification_matrix", 3, 3, rows_of(R));
     text += matrix("projection_matrix", 3, 4, rows_of(P));
-    if (auto written = write_file(out / (name + ".yaml"), text); !written) return written;
+    files.push_back({out / (name + ".yaml"), text});
   }
-  return Ok{};
+  return files;
 }
 
-Result<> write_euroc(const StereoCalibration& c, const fs::path& out) {
+Result<TextFiles> euroc_files(const StereoCalibration& c, const fs::path& out) {
+  TextFiles files;
   for (int side = 0; side < 2; ++side) {
     const CameraIntrinsics& camera = side == 0 ? c.left : c.right;
     const Rigid3 T_body_camera = side == 0 ? c.T_body_left : c.T_body_left * c.T_right_left.inverse();
@@ -162,29 +178,34 @@ Result<> write_euroc(const StereoCalibration& c, const fs::path& out) {
     text += "intrinsics: " + list({camera.fx_px, camera.fy_px, camera.cx_px, camera.cy_px}) + "\n";
     text += "distortion_model: " + std::string(lens_name(camera.lens, CalibrationFormat::euroc)) + "\n";
     text += "distortion_coefficients: " + list(coefficients(camera)) + "\n";
-    const fs::path file = out / "mav0" / ("cam" + std::to_string(side)) / "sensor.yaml";
-    if (auto written = write_file(file, text); !written) return written;
+    files.push_back({out / "mav0" / ("cam" + std::to_string(side)) / "sensor.yaml", text});
   }
-  return Ok{};
+  return files;
+}
+
+Result<TextFiles> files_of(const StereoCalibration& c, CalibrationFormat format, const fs::path& out) {
+  switch (format) {
+    case CalibrationFormat::opencv:
+      return opencv_files(c, out);
+    case CalibrationFormat::kalibr:
+      return kalibr_files(c, out);
+    case CalibrationFormat::ros:
+      return ros_files(c, out);
+    case CalibrationFormat::euroc:
+      return euroc_files(c, out);
+  }
+  return TextFiles{};
 }
 
 }  // namespace
 
-Result<> write_calibration(const StereoCalibration& c, CalibrationFormat format, const fs::path& out) {
+Result<> write_calibration(const StereoCalibration& c, CalibrationFormat format, const fs::path& out, bool overwrite) {
   if (c.left.width == 0 && format != CalibrationFormat::opencv)
     return Error{ErrorCode::bad_calibration, out.string(), "the image size is not known, and this format needs it",
                  "convert the folder of the recording, whose images tell it, or add imageSize to the calibration"};
-  switch (format) {
-    case CalibrationFormat::opencv:
-      return write_opencv(c, out);
-    case CalibrationFormat::kalibr:
-      return write_kalibr(c, out);
-    case CalibrationFormat::ros:
-      return write_ros(c, out);
-    case CalibrationFormat::euroc:
-      return write_euroc(c, out);
-  }
-  return Ok{};
+  const Result<TextFiles> files = files_of(c, format, out);
+  if (!files) return files.error();
+  return write_files(files.value(), overwrite);
 }
 
 }  // namespace pelorus

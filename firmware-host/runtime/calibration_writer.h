@@ -1,6 +1,7 @@
 #pragma once
 // write_calibration: a calibration into any of the formats load_calibration reads, with all digits, so that reading
-// it back gives the same pair. What a format cannot hold is an Error, not a silent loss. Thread-bound.
+// it back gives the same pair. What a format cannot hold is an Error, not a silent loss. All files or none: they get
+// their names when all of them are written. Thread-bound.
 
 #include <filesystem>
 
@@ -14,6 +15,6 @@ namespace pelorus {
 enum class CalibrationFormat { opencv, kalibr, ros, euroc };
 
 [[nodiscard]] Result<> write_calibration(const StereoCalibration& calibration, CalibrationFormat format,
-                                         const std::filesystem::path& out);
+                                         const std::filesystem::path& out, bool overwrite = true);
 
 }  // namespace pelorus

@@ -23,7 +23,18 @@ check "all files are as packed" same "" dpkg --verify pelorus pelorus-dev
 check "the service is not enabled by itself" bash -c '! ls /etc/systemd/system/*/pelorusd.service'
 check "the shipped configuration says what is missing" bash -c '
   pelorusd --config /etc/pelorus/pelorus.yaml --check-config 2>&1 | grep -q "source.path is not given"'
+work=$(mktemp -d)
 check "a shipped scene renders and is processed" bash -c '
-  cd "$(mktemp -d)" && pelorus synth paper --frames 4 --out dive && pelorus replay dive --out result &&
-  [ "$(grep -vc "^#" result/camera.tum)" = 4 ]; code=$?; rm -rf "$PWD"; exit $code'
+  cd "$1" && pelorus synth paper --frames 6 --out dive && pelorus replay dive --out result &&
+  [ "$(grep -vc "^#" result/camera.tum)" = 6 ] && [ ! -e result/INCOMPLETE ]' - "$work"
+check "the run is judged against its truth" bash -c 'pelorus eval "$1/dive" "$1/result" | grep -q "absolute error, mean"' - "$work"
+check "its report is a whole page, over 500 kB" bash -c '
+  pelorus report "$1/result" "$1/dive" && [ "$(stat -c %s "$1/result/report.html")" -gt 500000 ] &&
+  tail -c 20 "$1/result/report.html" | grep -q "</html>"' - "$work"
+rm -rf "$work"
+check "the types for lcm-spy are there, and pelorus-spy asks for Java only" bash -c '
+  [ -s /usr/share/pelorus/pelorus-messages.jar ] && pelorus-spy 2>&1 | grep -q "Java is missing"'
+check "the DBC describes the messages" grep -q "^BO_ .* VIS_VEL" /usr/share/pelorus/autopilot/pelorus.dbc
+check "the documents lie with their pictures" bash -c '
+  cd /usr/share/doc/pelorus && [ -s docs/overlay.png ] && [ -s core/README.md ] && [ -s README.md ]'
 exit $failed

@@ -82,6 +82,7 @@ check "installs with what it depends on and nothing else" inside dpkg -i /srv/pa
 check "no dependency is a compiler, node or Java" sh -c \
   "! dpkg-deb -f '$main_deb' Depends Recommends | grep -E 'gcc-[0-9]|g\+\+|-dev|nodejs|npm|jre|jdk'"
 inside bash /srv/packages/installed_in_system.sh || failed=1
+check "no link of the installed documents dangles" python3 "$here/../check_links.py" "$root/usr/share/doc/pelorus"
 receiver=$root/usr/share/pelorus/autopilot
 check "the receiver of pelorus-dev compiles as C99" gcc -std=c99 -ffreestanding -Wall -Wextra -Werror -c \
   -o "$work/receiver.o" "$receiver/pelorus_can.c"

@@ -86,7 +86,7 @@ void switch_off(const std::string& step, PipelineConfig& config) {
 
 Result<RunEvaluation> replay_and_evaluate(const std::string& dataset, const AblateArguments& arguments,
                                           const PipelineConfig& config, const fs::path& folder,
-                                          const std::string& title, std::string& incomplete) {
+                                          const std::string& title, AblationRun& run) {
   Result<std::unique_ptr<StereoSource>> source = open_source(dataset, arguments.calibration);
   if (!source) return source.error();
   if (Result<Ok> ready = prepare_output_folder(folder, arguments.overwrite); !ready) return ready.error();
@@ -102,8 +102,9 @@ Result<RunEvaluation> replay_and_evaluate(const std::string& dataset, const Abla
   options.warn = [&bar](const Error& error) { bar.tell(skipped_text(error)); };
   const Result<ReplaySummary> summary = run_replay(*source.value(), options);
   if (!summary) return summary.error();
+  run.broke_off = summary.value().broke_off;
   if (summary.value().ended_early) return *summary.value().failure;
-  if (summary.value().failure) incomplete = incomplete_text(summary.value());
+  if (is_incomplete(summary.value())) run.incomplete = incomplete_text(summary.value());
   return evaluate_run(dataset, arguments.calibration, folder, {});
 }
 
@@ -119,8 +120,7 @@ std::vector<AblationRun> run_all(const std::string& dataset, const AblateArgumen
     switch_off(run.step_off, changed);
     const std::string name = i == 0 ? "all_on" : "without_" + run.step_off;
     const std::string title = name + " (" + std::to_string(i + 1) + "/" + std::to_string(steps.size() + 1) + ")";
-    Result<RunEvaluation> result =
-        replay_and_evaluate(dataset, arguments, changed, folder / name, title, run.incomplete);
+    Result<RunEvaluation> result = replay_and_evaluate(dataset, arguments, changed, folder / name, title, run);
     if (ReplayInterrupt::requested()) break;
     if (result) {
       run.result = std::move(result.value());
@@ -167,6 +167,10 @@ Result<int> run_verb(const AblateArguments& arguments) {
   std::fputs((arguments.json ? to_json(runs) + "\n" : to_table(runs)).c_str(), stdout);
   if (!arguments.out.empty() && !arguments.json) std::printf("runs  %s\n", arguments.out.c_str());
   if (ReplayInterrupt::requested()) return kInterruptedExitCode;
+  if (runs.front().broke_off) {
+    std::fprintf(stderr, "pelorus: the recording broke off: %s\n", runs.front().failure.c_str());
+    return kBrokeOffExitCode;
+  }
   if (!runs.front().result) {
     return Error{ErrorCode::bad_input, arguments.dataset, "the run with all steps failed: " + runs.front().failure, ""};
   }
@@ -193,9 +197,10 @@ Verb add_ablate(CLI::App& app) {
   parser->add_flag("--overwrite", arguments->overwrite, "Replace the runs of an earlier ablation in OUT");
   parser->add_flag("--json", arguments->json, "JSON instead of a table: SI units, radians");
   parser->footer(
-      "Exit codes: 0 done, 2 usage, 3 bad input or no truth, 4 calibration, 5 configuration, 6 output, 130 "
-      "interrupted.\n"
-      "Damaged pairs are skipped and told of; the exit code is 3 then, also for a single one.");
+      "Exit codes: 0 done, 2 usage, 3 bad input or no truth, 4 calibration, 5 configuration, 6 output, 8 the "
+      "recording\n"
+      "broke off, 130 interrupted.\n"
+      "Missing and damaged pairs are told of; the exit code is 3 then, also for a single one.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
 

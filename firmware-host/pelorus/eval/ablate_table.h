@@ -13,6 +13,7 @@ struct AblationRun {
   std::string step_off;  // empty: every step is on
   std::optional<RunEvaluation> result;
   std::string failure;     // why there is no result
+  bool broke_off = false;  // the recording, see failure
   std::string incomplete;  // what the run went on without; empty: nothing
 };
 

@@ -7,6 +7,7 @@
 #include "firmware-host/pelorus/eval/eval_json.h"
 #include "firmware-host/pelorus/eval/eval_run.h"
 #include "firmware-host/pelorus/eval/eval_table.h"
+#include "firmware-host/pelorus/results/incomplete_mark.h"
 
 namespace pelorus {
 namespace {
@@ -22,6 +23,7 @@ struct EvalArguments {
 Result<int> run_verb(const EvalArguments& arguments) {
   const Result<RunEvaluation> run =
       evaluate_run(arguments.dataset, arguments.calibration, arguments.out, arguments.config);
+  std::fputs(incomplete_warning(arguments.out).c_str(), stderr);
   if (!run) return run.error();
   const std::string text = arguments.json ? to_json(run.value()) + "\n" : to_table(run.value());
   std::fputs(text.c_str(), stdout);

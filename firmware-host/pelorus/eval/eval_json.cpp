@@ -111,6 +111,7 @@ std::string to_json(const RunEvaluation& run) {
   JsonObject json;
   json.text("dataset", run.dataset)
       .text("run", run.folder)
+      .raw("incomplete", run.incomplete ? json_text(*run.incomplete) : "null")
       .integer("frames", static_cast<long long>(facts.frames))
       .integer("frames_with_pose", static_cast<long long>(facts.frames_with_pose))
       .integer("frames_missing", static_cast<long long>(facts.frames_missed))

@@ -1,6 +1,7 @@
 #include "firmware-host/pelorus/eval/eval_run.h"
 
 #include "firmware-host/pelorus/eval/eval_truth.h"
+#include "firmware-host/pelorus/results/incomplete_mark.h"
 
 namespace pelorus {
 
@@ -22,6 +23,7 @@ Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calib
   result.dataset = dataset;
   result.folder = folder.string();
   result.step_times = step_times.value();
+  result.incomplete = incomplete_reason(folder);
   if (!judged.truth) {
     result.evaluation.facts = run_facts(judged.run);
     return judged;

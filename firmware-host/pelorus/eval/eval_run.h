@@ -21,6 +21,7 @@ struct RunEvaluation {
   bool exact_truth = false;
   bool scale_known = true;
   std::string truth_origin;
+  std::optional<std::string> incomplete;  // why the run's files hold less than the recording (IncompleteMark)
 };
 
 struct JudgedRun {

@@ -46,6 +46,7 @@ std::string heading(const std::string& name) {
 std::string facts_text(const RunEvaluation& run) {
   const RunFacts& facts = run.evaluation.facts;
   std::string text = "Run    " + run.folder + "\n";
+  if (run.incomplete) text += "       INCOMPLETE: " + *run.incomplete + "\n";
   text += format("       %zu frames, %zu with a pose, %zu missing, resets %d;", facts.frames, facts.frames_with_pose,
                  facts.frames_missed, facts.resets);
   for (std::size_t i = 0; i < facts.states.size(); ++i) {

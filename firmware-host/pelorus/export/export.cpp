@@ -7,10 +7,11 @@
 #include <string>
 
 #include "firmware-host/pelorus/export/mcap_export.h"
-#include "firmware-host/pelorus/export/partial_file.h"
 #include "firmware-host/pelorus/export/ply_text.h"
 #include "firmware-host/pelorus/export/trajectory_text.h"
+#include "firmware-host/pelorus/results/incomplete_mark.h"
 #include "firmware-host/pelorus/results/result_reader.h"
+#include "firmware-host/runtime/partial_file.h"
 
 namespace pelorus {
 namespace {
@@ -87,6 +88,7 @@ Result<int> export_clouds(const ExportArguments& arguments) {
 }
 
 Result<int> run_export(const ExportArguments& arguments) {
+  std::fputs(incomplete_warning(arguments.run).c_str(), stderr);
   if (arguments.format == "ply") return export_clouds(arguments);
   if (arguments.body > 0 && arguments.format != "tum" && arguments.format != "kitti") {
     return Error{ErrorCode::bad_usage, "--body", "is for tum and kitti, which hold one trajectory",

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "firmware-host/pelorus/export/partial_file.h"
+#include "firmware-host/runtime/partial_file.h"
 
 namespace pelorus {
 

@@ -57,14 +57,19 @@ Result<int> run_verb(const ReplayArguments& arguments) {
   if (!summary) return summary.error();
   std::printf("%sresults  %s\n", to_text(summary.value()).c_str(), arguments.out.c_str());
   std::fflush(stdout);  // before what follows on stderr, also when both go to one file
+  if (summary.value().broke_off) {
+    std::fprintf(stderr, "pelorus: the recording broke off, what was processed before is good: %s\n",
+                 summary.value().failure->message().c_str());
+    return kBrokeOffExitCode;
+  }
   if (summary.value().ended_early) return *summary.value().failure;
   if (summary.value().interrupted) {
     std::fprintf(stderr, "pelorus: interrupted; the files hold every frame up to here\n");
     return kInterruptedExitCode;
   }
-  if (!summary.value().failure) return 0;
+  if (!is_incomplete(summary.value())) return 0;
   std::fprintf(stderr, "%s\n", incomplete_text(summary.value()).c_str());
-  return exit_code(summary.value().failure->code);
+  return exit_code(ErrorCode::bad_input);
 }
 
 }  // namespace
@@ -89,9 +94,11 @@ Verb add_replay(CLI::App& app) {
   parser->add_flag("--stepped", arguments->stepped, "Every pair, as fast as possible (default)")->excludes(realtime);
   parser->add_flag("--overwrite", arguments->overwrite, "Replace the results of an earlier run in OUT");
   parser->footer(
-      "Exit codes: 0 done, 2 usage, 3 bad input, 4 calibration, 5 configuration, 6 output, 130 interrupted.\n"
-      "Damaged pairs are skipped and told of, up to three in a row, at the start any number: the run goes on, and its\n"
-      "exit code is 3, also for a single one. On an error that ends the run everything processed before it is kept.");
+      "Exit codes: 0 done, 2 usage, 3 bad input, or done without pairs that the recording lacks or that are damaged,\n"
+      "4 calibration, 5 configuration, 6 output, 8 the recording broke off, 130 interrupted.\n"
+      "Missing and damaged pairs are told of, and the run goes on; a single one makes the exit code 3. Four damaged\n"
+      "pairs in a row are the end (8), but not at the start. Until a run has come to its end its folder holds a file\n"
+      "INCOMPLETE with the reason; what was processed before an error is kept.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
 

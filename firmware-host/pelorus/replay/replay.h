@@ -5,8 +5,8 @@
 
 namespace pelorus {
 
-// Exit codes: 0 done; 2 usage; 3 bad input (also midway or for a single skipped pair: what was processed is kept);
-// 4 calibration; 5 configuration; 6 output; 130 interrupted, files valid.
+// Exit codes: 0 done; 2 usage; 3 bad input (also for a single missing or skipped pair); 4 calibration; 5 configuration;
+// 6 output; 8 the recording broke off; 130 interrupted. Whatever was processed is kept.
 [[nodiscard]] Verb add_replay(CLI::App& app);
 
 }  // namespace pelorus

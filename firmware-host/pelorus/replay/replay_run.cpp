@@ -4,11 +4,12 @@
 #include <chrono>
 #include <cstdio>
 #include <set>
-#include <thread>
 #include <vector>
 
 #include "core/geometry/rectifier.h"
 #include "core/pipeline/pipeline.h"
+#include "firmware-host/pelorus/replay/pair_feed.h"
+#include "firmware-host/pelorus/results/incomplete_mark.h"
 #include "firmware-host/pelorus/results/result_files.h"
 #include "firmware-host/pelorus/results/scene_writer.h"
 #include "services/overlay.h"
@@ -23,98 +24,9 @@ std::int64_t microseconds_since(Clock::time_point start) {
   return std::chrono::duration_cast<std::chrono::microseconds>(Clock::now() - start).count();
 }
 
-// Reads pairs; in real-time mode releases each at its recorded time and, when the step was late, only the newest.
-class PairFeed {
- public:
-  PairFeed(StereoSource& source, const ReplayOptions& options) : source_(source), options_(options) {}
-
-  // False at the end of the data, at max_frames, or when asked to stop.
-  [[nodiscard]] Result<bool> next(SourcePair& pair) {
-    Result<bool> more = read(pair);
-    if (!more || !more.value() || !options_.realtime) return more;
-    if (!started_) {
-      started_ = true;
-      start_clock_ = Clock::now();
-      start_time_ = pair.capture_time;
-      return true;
-    }
-    while (is_superseded(pair)) {
-      if (more = read(ahead_); !more) return more;
-      if (!more.value()) return true;  // the last pair is the newest there is
-      std::swap(pair, ahead_);
-      ++dropped_;
-    }
-    wait_until(due(pair));
-    return true;
-  }
-
-  [[nodiscard]] std::uint64_t dropped() const { return dropped_; }
-  [[nodiscard]] std::uint64_t pairs_read() const { return read_; }
-  [[nodiscard]] bool stopped() const { return stopped_; }
-  [[nodiscard]] std::uint64_t unreadable() const { return unreadable_; }
-  // Of these, the ones between readable pairs: only they are gaps in seq.
-  [[nodiscard]] std::uint64_t bridged() const { return bridged_; }
-  [[nodiscard]] const std::optional<Error>& first_unreadable() const { return first_unreadable_; }
-
- private:
-  Result<bool> read(SourcePair& pair) {
-    if (options_.stop && options_.stop()) stopped_ = true;
-    if (stopped_ || (options_.max_frames > 0 && read_ >= options_.max_frames)) return false;
-    Result<bool> more = next_readable(pair);
-    if (more.ok() && more.value()) {
-      ++read_;
-      if (has_last_) interval_ = pair.capture_time - last_time_;
-      last_time_ = pair.capture_time;
-      has_last_ = true;
-    }
-    return more;
-  }
-  // A damaged image costs its pair, told and counted; more of them in a row than the method bridges end the run. Before
-  // the first readable pair there is nothing to bridge.
-  Result<bool> next_readable(SourcePair& pair) {
-    constexpr std::uint64_t kBridgedPairs = 3;
-    for (std::uint64_t in_a_row = 0;; ++in_a_row) {
-      Result<bool> more = source_.next(pair);
-      if (more.ok() && more.value() && read_ > 0) bridged_ += in_a_row;
-      if (more.ok()) return more;
-      if (!first_unreadable_) first_unreadable_ = more.error();
-      if (in_a_row == kBridgedPairs && read_ > 0) return more;
-      ++unreadable_;
-      if (options_.warn) options_.warn(more.error());
-    }
-  }
-  Clock::time_point due(const SourcePair& pair) const { return start_clock_ + (pair.capture_time - start_time_); }
-  // Its successor, one interval later, has been captured by now.
-  bool is_superseded(const SourcePair& pair) const { return Clock::now() >= due(pair) + interval_; }
-  void wait_until(Clock::time_point time) const {
-    constexpr auto kAskStopEvery = std::chrono::milliseconds(50);
-    while (Clock::now() < time && !(options_.stop && options_.stop())) {
-      std::this_thread::sleep_until(std::min(time, Clock::now() + kAskStopEvery));
-    }
-  }
-
-  StereoSource& source_;
-  const ReplayOptions& options_;
-  SourcePair ahead_;
-  bool started_ = false;
-  bool stopped_ = false;
-  bool has_last_ = false;
-  Clock::time_point start_clock_;
-  Timestamp start_time_;
-  Timestamp last_time_;
-  Duration interval_{0};
-  std::uint64_t read_ = 0;
-  std::uint64_t dropped_ = 0;
-  std::uint64_t unreadable_ = 0;
-  std::uint64_t bridged_ = 0;
-  std::optional<Error> first_unreadable_;
-};
-
 class SummaryCounter {
  public:
   void count(const FrameResult& result, const FrameTiming& timing) {
-    if (summary_.frames > 0 && result.seq > last_seq_ + 1) summary_.missing += result.seq - last_seq_ - 1;
-    last_seq_ = result.seq;
     ++summary_.frames;
     if (!result.pose_valid) ++summary_.without_pose;
     ++summary_.states[static_cast<std::size_t>(result.state)];
@@ -127,16 +39,15 @@ class SummaryCounter {
 
   [[nodiscard]] ReplaySummary finish(const PairFeed& feed, std::optional<Error> failure) {
     summary_.dropped = feed.dropped();
-    // A pair dropped by the feed or bridged leaves the same gap in seq as one missing from the recording.
-    summary_.missing -= std::min(summary_.missing, summary_.dropped);
+    summary_.missing = feed.missing();
     summary_.unreadable = feed.unreadable();
-    summary_.missing -= std::min(summary_.missing, feed.bridged());
     summary_.objects_confirmed = static_cast<int>(confirmed_.size());
     std::sort(step_us_.begin(), step_us_.end());
     summary_.median_step_ms = quantile_ms(0.5);
     summary_.p99_step_ms = quantile_ms(0.99);
     summary_.interrupted = feed.stopped();
     summary_.ended_early = failure.has_value();
+    summary_.broke_off = feed.broke_off();
     summary_.failure = failure ? std::move(failure) : feed.first_unreadable();
     return summary_;
   }
@@ -149,7 +60,6 @@ class SummaryCounter {
   }
 
   ReplaySummary summary_;
-  std::uint64_t last_seq_ = 0;
   std::set<BodyId> confirmed_;
   std::vector<std::int64_t> step_us_;
 };
@@ -223,21 +133,17 @@ Result<Ok> run_frames(PairFeed& feed, const ReplayOptions& options, const Rectif
   }
 }
 
-}  // namespace
-
-Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& options) {
-  Result<Rectifier> rectifier = Rectifier::create(source.calibration(), "calibration");
-  if (!rectifier) return rectifier.error();
+Result<ReplaySummary> replay_marked(StereoSource& source, const ReplayOptions& options, const Rectifier& rectifier) {
   Result<ResultWriter> writer = ResultWriter::create(options.out_folder);
   if (!writer) return writer.error();
-  Result<SceneWriter> scene = SceneWriter::create(options.out_folder, rectifier.value().rig());
+  Result<SceneWriter> scene = SceneWriter::create(options.out_folder, rectifier.rig());
   if (!scene) return scene.error();
   if (Result<Ok> made = make_overlay_folder(options); !made) return made.error();
   std::uint64_t total = source.pair_count();
   if (options.max_frames > 0) total = total > 0 ? std::min(total, options.max_frames) : options.max_frames;
   PairFeed feed(source, options);
   SummaryCounter counter;
-  Result<Ok> outcome = run_frames(feed, options, rectifier.value(), writer.value(), scene.value(), counter, total);
+  Result<Ok> outcome = run_frames(feed, options, rectifier, writer.value(), scene.value(), counter, total);
   Result<Ok> finished = scene.value().finish();
   std::optional<Error> failure;
   if (!finished) failure = finished.error();
@@ -245,10 +151,44 @@ Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& opti
   return counter.finish(feed, std::move(failure));
 }
 
+// Why the files hold less than the whole run; empty when they hold it.
+std::string early_end(const Result<ReplaySummary>& run) {
+  if (!run) return run.error().message();
+  const ReplaySummary& summary = run.value();
+  if (summary.broke_off) return "the recording broke off: " + summary.failure->message();
+  if (summary.ended_early) return summary.failure->message();
+  return summary.interrupted ? "interrupted" : "";
+}
+
+}  // namespace
+
+Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& options) {
+  Result<Rectifier> rectifier = Rectifier::create(source.calibration(), "calibration");
+  if (!rectifier) return rectifier.error();
+  Result<IncompleteMark> mark = IncompleteMark::set(options.out_folder);
+  if (!mark) return mark.error();
+  Result<ReplaySummary> run = replay_marked(source, options, rectifier.value());
+  if (const std::string reason = early_end(run); !reason.empty()) {
+    mark.value().explain(reason);
+  } else if (Result<> cleared = mark.value().clear(); !cleared) {
+    return cleared.error();
+  }
+  return run;
+}
+
+bool is_incomplete(const ReplaySummary& summary) {
+  return !summary.ended_early && !summary.interrupted && summary.unreadable + summary.missing.count > 0;
+}
+
 std::string skipped_text(const Error& error) { return "pelorus: pair skipped: " + error.message(); }
 
 std::string incomplete_text(const ReplaySummary& summary) {
-  return "pelorus: finished, but " + pairs_text(summary.unreadable) + " of the recording could not be read";
+  std::string text = "pelorus: finished, but ";
+  if (summary.unreadable > 0) text += pairs_text(summary.unreadable) + " of the recording could not be read";
+  if (summary.missing.count == 0) return text;
+  if (summary.unreadable > 0) text += ", and ";
+  return text + pairs_text(summary.missing.count) + " of the recording " + (summary.missing.count == 1 ? "is" : "are") +
+         " missing, the first at " + std::to_string(summary.missing.first.ns) + " ns";
 }
 
 std::string to_text(const ReplaySummary& summary) {
@@ -260,7 +200,7 @@ std::string to_text(const ReplaySummary& summary) {
   };
   using ull = unsigned long long;
   add("frames   %llu stepped, %llu missing in the recording, %llu unreadable, %llu dropped, %llu without a pose\n",
-      static_cast<ull>(summary.frames), static_cast<ull>(summary.missing), static_cast<ull>(summary.unreadable),
+      static_cast<ull>(summary.frames), static_cast<ull>(summary.missing.count), static_cast<ull>(summary.unreadable),
       static_cast<ull>(summary.dropped), static_cast<ull>(summary.without_pose));
   text += "states  ";
   for (std::size_t i = 0; i < summary.states.size(); ++i) {

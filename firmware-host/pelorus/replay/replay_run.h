@@ -32,7 +32,7 @@ struct ReplayOptions {
 struct ReplaySummary {
   std::uint64_t frames = 0;               // steps made
   std::uint64_t unreadable = 0;           // pairs with a damaged image
-  std::uint64_t missing = 0;              // gaps in seq: pairs the recording lacks
+  MissingPairs missing;                   // pairs the recording lacks
   std::uint64_t dropped = 0;              // real-time mode: pairs skipped because the step was late
   std::uint64_t without_pose = 0;         // frames that camera.tum lacks
   std::array<std::uint64_t, 7> states{};  // frames per VisionState
@@ -42,13 +42,19 @@ struct ReplaySummary {
   double p99_step_ms = 0;
   bool interrupted = false;  // stop() said so
   bool ended_early = false;  // by the failure below
+  bool broke_off = false;    // ended_early, because the source gave nothing more that can be used
   // Why the run ended early, or else the first pair that could not be read; files hold everything that could.
   std::optional<Error> failure;
 };
 
+// Of a recording that broke off: more pairs in a row cannot be read than are bridged. What was processed is good.
+inline constexpr int kBrokeOffExitCode = 8;
+
 // What ReplayOptions::warn has to say of a pair.
 [[nodiscard]] std::string skipped_text(const Error& error);
-// The line for people about a run that went to its end without some of the pairs.
+// The run went to its end without some of the pairs.
+[[nodiscard]] bool is_incomplete(const ReplaySummary& summary);
+// The line for people about such a run.
 [[nodiscard]] std::string incomplete_text(const ReplaySummary& summary);
 
 // An Error here means that nothing could be started (calibration, output); later failures are in the summary.

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "firmware-host/pelorus/report/page.h"
+#include "firmware-host/pelorus/results/incomplete_mark.h"
 #include "firmware-host/pelorus/results/result_files.h"
 
 namespace pelorus {
@@ -18,6 +19,7 @@ struct ReportArguments {
 
 Result<int> run_verb(const ReportArguments& arguments) {
   std::filesystem::path file = arguments.file;
+  std::fputs(incomplete_warning(arguments.out).c_str(), stderr);
   if (file.empty()) file = ResultPaths(arguments.out).report;
   const Result<Ok> written = write_report(arguments.out, arguments.dataset, arguments.calibration, file);
   if (!written) return written.error();

@@ -31,6 +31,7 @@ struct ResultPaths {
         timing(folder / "timing.csv"),
         points(folder / "points.csv"),
         outlines(folder / "outlines.csv"),
+        incomplete(folder / "INCOMPLETE"),
         overlay(folder / "overlay"),
         report(folder / "report.html") {}
   std::filesystem::path camera;
@@ -39,6 +40,7 @@ struct ResultPaths {
   std::filesystem::path timing;
   std::filesystem::path points;
   std::filesystem::path outlines;
+  std::filesystem::path incomplete;  // IncompleteMark
   std::filesystem::path overlay;
   std::filesystem::path report;
 };

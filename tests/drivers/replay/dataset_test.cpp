@@ -84,6 +84,20 @@ TEST_F(Dataset, AMissingImageOnEitherSideIsAGapInSeq) {
       << source->description();
 }
 
+// Losses at the start and at the end leave no gap between two pairs, and are losses all the same.
+TEST_F(Dataset, MissingPairsAreCountedAsFarAsTheReadingIs) {
+  const fs::path root = euroc();
+  for (const int lost : {0, 4}) fs::remove(root / "mav0/cam1/data" / png(lost));
+  fs::remove(root / "mav0/cam0/data" / png(kPairs - 1));
+  const auto source = open(root);
+  ASSERT_NE(source, nullptr);
+  std::vector<std::uint64_t> counts{source->missing_pairs().count};
+  SourcePair pair;
+  while (source->next(pair).value()) counts.push_back(source->missing_pairs().count);
+  EXPECT_EQ(counts, (std::vector<std::uint64_t>{0, 1, 1, 1, 2, 3})) << "before the first pair, then after each";
+  EXPECT_EQ(source->missing_pairs().first.ns, time_ns(0));
+}
+
 TEST_F(Dataset, ALineMissingInBothListsIsAGapInSeqToo) {
   const fs::path root = euroc();
   for (const char* camera : {"mav0/cam0", "mav0/cam1"}) {
@@ -96,6 +110,8 @@ TEST_F(Dataset, ALineMissingInBothListsIsAGapInSeqToo) {
   ASSERT_NE(source, nullptr);
   EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{0, 1, 4, 5, 6, 7}));
   EXPECT_NE(source->description().find("2 never recorded"), std::string::npos) << source->description();
+  EXPECT_EQ(source->missing_pairs().count, 2u);
+  EXPECT_NEAR(static_cast<double>(source->missing_pairs().first.ns - time_ns(2)), 0, 1e6) << "no image tells it";
 }
 
 TEST_F(Dataset, AMissingKittiImageIsAGapInSeq) {

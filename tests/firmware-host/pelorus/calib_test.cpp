@@ -1,7 +1,9 @@
 #include "firmware-host/pelorus/calib.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <string>
 #include <vector>
 
@@ -54,6 +56,44 @@ TEST_F(Calib, ConvertsAndTheResultChecks) {
     auto source = open_source(root.string(), out.string());
     ASSERT_TRUE(source.ok()) << source.error().message();
     EXPECT_NEAR(source.value()->calibration().T_right_left.translation().x(), -0.11, 1e-12) << format;
+  }
+}
+
+TEST_F(Calib, ConvertReplacesNothingUnlessToldTo) {
+  const fs::path root = euroc();
+  for (const char* format : {"opencv", "ros"}) {
+    const fs::path out = folder_ / (std::string(format) + ".out");
+    const fs::path file = format == std::string("ros") ? out / "right.yaml" : out;
+    write(file, "mine");
+    const std::vector<std::string> convert{"calib", "convert", root.string(), "--to", format, "--out", out.string()};
+    EXPECT_EQ(run(convert), 6) << format;
+    EXPECT_EQ(test::read_text(file), "mine") << format;
+    EXPECT_FALSE(fs::exists(out / "left.yaml")) << "one half of it";
+    std::vector<std::string> overwriting = convert;
+    overwriting.push_back("--overwrite");
+    EXPECT_EQ(run(overwriting), 0) << format;
+    EXPECT_EQ(run({"calib", "check", root.string(), "--calib", out.string()}), 0) << format;
+  }
+}
+
+// Files that may not grow stand for a full disk.
+TEST_F(Calib, AFullDiskLeavesNoFileUnderTheFinalName) {
+  const fs::path root = euroc();
+  const auto former = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit{};
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit none{0, limit.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &none);
+  std::vector<int> codes;
+  for (const char* format : {"opencv", "euroc"}) {
+    codes.push_back(
+        run({"calib", "convert", root.string(), "--to", format, "--out", (folder_ / "full" / format).string()}));
+  }
+  setrlimit(RLIMIT_FSIZE, &limit);
+  std::signal(SIGXFSZ, former);
+  EXPECT_EQ(codes, (std::vector<int>{6, 6}));
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "full")) {
+    EXPECT_TRUE(entry.is_directory()) << entry.path();
   }
 }
 

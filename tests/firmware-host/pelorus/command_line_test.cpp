@@ -1,46 +1,17 @@
 // The tool as a user meets it: exit codes, messages, files.
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
-
-#include "tests/support/temporary_folder.h"
+#include "tests/firmware-host/pelorus/tool_process.h"
 
 namespace pelorus {
 namespace {
 
+using test::Outcome;
+using test::run_tool;
+using test::small_scene;
 using test::TemporaryFolder;
 using test::write_text;
-
-struct Outcome {
-  int exit_code = 0;
-  std::string text;  // stdout and stderr
-};
-
-// `before`: shell commands that come first.
-Outcome run_tool(const std::string& arguments, const std::string& before = "") {
-  Outcome outcome;
-  const std::string command = before + PELORUS_TOOL + " " + arguments + " 2>&1";
-  std::FILE* pipe = popen(command.c_str(), "r");
-  std::array<char, 512> part{};
-  while (pipe && std::fgets(part.data(), part.size(), pipe)) outcome.text += part.data();
-  const int status = pipe ? pclose(pipe) : -1;
-  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
-
-// A flat, small, quick scene of a few frames.
-std::string small_scene(const TemporaryFolder& folder, int frames) {
-  const std::string scene = (folder.path() / "scene.yaml").string();
-  write_text(scene, "name: small\nframes: " + std::to_string(frames) +
-                        "\n"
-                        "camera: {width_px: 160, height_px: 120, f_px: 120, baseline_m: 0.12}\n"
-                        "vehicle:\n  step_s: 1\n  p_m: [[0, 0, 0], [0.2, 0, 0], [0.4, 0, 0], [0.6, 0, 0]]\n"
-                        "  rpy_deg: [[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]]\n");
-  return scene;
-}
 
 TEST(CommandLine, EveryVerbExplainsItself) {
   for (const char* verb :
@@ -102,22 +73,6 @@ TEST(CommandLine, OverlayEveryImpliesOverlay) {
   EXPECT_TRUE(std::filesystem::exists(out / "overlay" / "000003.png"));
 }
 
-TEST(CommandLine, ADamagedFirstImageIsSkippedAndTheCodeIsThree) {
-  const TemporaryFolder folder;
-  const std::filesystem::path dive = folder.path() / "dive";
-  const std::string out = (folder.path() / "out").string();
-  ASSERT_EQ(run_tool("synth " + small_scene(folder, 4) + " --out " + dive.string()).exit_code, 0);
-  const std::filesystem::path image = dive / "mav0/cam1/data/1600000000000000000.png";
-  ASSERT_TRUE(std::filesystem::exists(image));
-  std::filesystem::resize_file(image, std::filesystem::file_size(image) / 2);
-  const Outcome outcome = run_tool("replay " + dive.string() + " --out " + out);
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.text.find("pair skipped: " + image.string()), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("3 stepped"), std::string::npos) << outcome.text;
-  EXPECT_NE(outcome.text.find("finished, but 1 pair of the recording could not be read"), std::string::npos)
-      << outcome.text;
-}
-
 TEST(CommandLine, ExchangedPicturesEndReplayBeforeItWrites) {
   const TemporaryFolder folder;
   const std::filesystem::path mav0 = folder.path() / "dive" / "mav0";
@@ -172,20 +127,6 @@ TEST(CommandLine, EvalWithoutTruthSaysWhatItCanAndFails) {
   EXPECT_NE(outcome.text.find("no truth"), std::string::npos) << outcome.text;
 }
 
-TEST(CommandLine, InterruptedReplayEndsWithValidFilesAndCode130) {
-  const TemporaryFolder folder;
-  const std::string scene = small_scene(folder, 100000);
-  const std::string out = (folder.path() / "out").string();
-  // The shell waits until frames flow, then interrupts.
-  const std::string command = std::string(PELORUS_TOOL) + " replay " + scene + " --out " + out +
-                              " >/dev/null 2>&1 & p=$!; while [ $(cat " + out +
-                              "/frames.csv 2>/dev/null | wc -l) -lt 3 ]; do kill -0 $p || exit 99; sleep 0.05; done; "
-                              "kill -INT $p; wait $p";
-  const int status = std::system(("bash -c 'set -m; " + command + "' 2>/dev/null").c_str());
-  EXPECT_EQ(WEXITSTATUS(status), 130);
-  EXPECT_EQ(test::read_text(out + "/frames.csv").back(), '\n');
-}
-
 TEST(CommandLine, InterruptedRenderingLeavesNothingBehindAndTheFolderUsable) {
   const TemporaryFolder folder;
   const std::string scene = small_scene(folder, 100000);
@@ -222,6 +163,14 @@ TEST(CommandLine, MistypedSceneLeavesNoDemoFolderBehind) {
   EXPECT_FALSE(std::filesystem::exists(demo));
 }
 
+TEST(CommandLine, BadSceneLeavesNoDemoFolderBehind) {
+  const TemporaryFolder folder;
+  const std::string demo = (folder.path() / "demo").string();
+  write_text(folder.path() / "bad.yaml", "name: bad\nframess: 3\n");
+  EXPECT_EQ(run_tool("demo --scene " + (folder.path() / "bad.yaml").string() + " --out " + demo).exit_code, 5);
+  EXPECT_FALSE(std::filesystem::exists(demo));
+}
+
 TEST(CommandLine, AblateNamesTheStepsWhenAStepIsUnknown) {
   const Outcome outcome = run_tool("ablate paper --only net_filer");
   EXPECT_EQ(outcome.exit_code, 2);
@@ -234,17 +183,6 @@ TEST(CommandLine, AblatePrintsARowPerRun) {
   EXPECT_NE(outcome.text.find("\"step_off\":null"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("\"step_off\":\"net_filter\""), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("\"step_off\":\"ray_filter\""), std::string::npos) << outcome.text;
-}
-
-TEST(CommandLine, AblateWithADamagedPairSaysSoInItsCode) {
-  const TemporaryFolder folder;
-  const std::filesystem::path dive = folder.path() / "dive";
-  ASSERT_EQ(run_tool("synth " + small_scene(folder, 4) + " --out " + dive.string()).exit_code, 0);
-  EXPECT_EQ(run_tool("ablate " + dive.string() + " --only net_filter").exit_code, 0);
-  std::filesystem::resize_file(dive / "mav0/cam0/data/1600000000000000000.png", 100);
-  const Outcome outcome = run_tool("ablate " + dive.string() + " --only net_filter");
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.text.find("finished, but 1 pair"), std::string::npos) << outcome.text;
 }
 
 TEST(CommandLine, ExportWritesEachFormatAndRefusesWhatItCannot) {

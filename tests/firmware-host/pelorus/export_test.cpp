@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "firmware-host/pelorus/export/mcap_export.h"
-#include "firmware-host/pelorus/export/partial_file.h"
 #include "firmware-host/pelorus/export/ply_text.h"
 #include "firmware-host/pelorus/export/trajectory_text.h"
+#include "firmware-host/runtime/partial_file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace pelorus {

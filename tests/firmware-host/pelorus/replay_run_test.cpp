@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "firmware-host/pelorus/results/incomplete_mark.h"
 #include "tests/support/temporary_folder.h"
 
 namespace pelorus {
@@ -41,6 +42,10 @@ class FakeSource : public StereoSource {
     pair.right.resize(64, 48);
     ++next_;
     return true;
+  }
+  MissingPairs missing_pairs() const override {
+    const bool passed = next_ > missing;
+    return {passed ? 1U : 0U, Timestamp{passed ? static_cast<std::int64_t>(missing) * interval_ns : 0}};
   }
   std::string description() const override { return "fake"; }
 
@@ -99,7 +104,7 @@ TEST(RunReplay, FewDamagedPairsAreToldOfAndBridged) {
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 7U);
   EXPECT_EQ(summary.value().unreadable, 3U);
-  EXPECT_EQ(summary.value().missing, 0U) << "not counted twice";
+  EXPECT_EQ(summary.value().missing.count, 0U) << "not counted twice";
   EXPECT_EQ(warnings, 3);
   ASSERT_TRUE(summary.value().failure.has_value());
   EXPECT_EQ(summary.value().failure->place, "frame 4") << "the first one names the cause";
@@ -116,7 +121,7 @@ TEST(RunReplay, DamagedPairsAtTheStartAreSkippedHoweverMany) {
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 5U);
   EXPECT_EQ(summary.value().unreadable, 6U);
-  EXPECT_EQ(summary.value().missing, 1U) << "the pair that was never recorded is still told of";
+  EXPECT_EQ(summary.value().missing.count, 1U) << "the pair that was never recorded is still told of";
   EXPECT_FALSE(summary.value().ended_early);
   ASSERT_TRUE(summary.value().failure.has_value());
   EXPECT_EQ(summary.value().failure->place, "frame 0");
@@ -131,7 +136,10 @@ TEST(RunReplay, FourDamagedPairsInARowEndTheRun) {
   ASSERT_TRUE(summary.ok());
   EXPECT_TRUE(summary.value().failure.has_value());
   EXPECT_TRUE(summary.value().ended_early);
+  EXPECT_TRUE(summary.value().broke_off);
   EXPECT_EQ(frames_written(folder), 4);
+  EXPECT_NE(incomplete_reason(folder.path()).value_or("").find("broke off: frame 7"), std::string::npos)
+      << incomplete_reason(folder.path()).value_or("no mark");
 }
 
 TEST(RunReplay, StopRequestEndsTheRunWithValidFiles) {
@@ -144,6 +152,7 @@ TEST(RunReplay, StopRequestEndsTheRunWithValidFiles) {
   ASSERT_TRUE(summary.ok());
   EXPECT_TRUE(summary.value().interrupted);
   EXPECT_EQ(frames_written(folder), 3);
+  EXPECT_EQ(incomplete_reason(folder.path()), "interrupted");
 }
 
 TEST(RunReplay, FrameLimitIsNotAnInterruption) {
@@ -164,7 +173,10 @@ TEST(RunReplay, PairMissingInTheRecordingIsCounted) {
   const Result<ReplaySummary> summary = run_replay(source, options_for(folder));
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 4U);
-  EXPECT_EQ(summary.value().missing, 1U);
+  EXPECT_EQ(summary.value().missing.count, 1U);
+  EXPECT_EQ(summary.value().missing.first.ns, 3000);
+  EXPECT_TRUE(is_incomplete(summary.value()));
+  EXPECT_FALSE(incomplete_reason(folder.path()).has_value()) << "the run itself is whole";
 }
 
 // Pairs one nanosecond apart are all late at once: the first starts the clock, the last is the newest.
@@ -178,7 +190,8 @@ TEST(RunReplay, RealTimeModeLetsTheNewestPairWinAndCountsTheDropped) {
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 2U);
   EXPECT_EQ(summary.value().dropped, 4U);
-  EXPECT_EQ(summary.value().missing, 0U);
+  EXPECT_EQ(summary.value().missing.count, 0U);
+  EXPECT_FALSE(is_incomplete(summary.value())) << "being late is no fault of the recording";
 }
 
 TEST(RunReplay, OverlayWritesAPictureOfEveryNthFrame) {

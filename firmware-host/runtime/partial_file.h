@@ -19,7 +19,9 @@ class PartialFile {
   PartialFile& operator=(PartialFile&&) = delete;
   ~PartialFile();
 
-  void write(std::string_view bytes);  // failure shows in finish()
+  void write(std::string_view bytes);  // failure shows in flush() and finish()
+  // Everything written is the kernel's.
+  [[nodiscard]] Result<> flush();
   [[nodiscard]] Result<> finish();
 
  private:

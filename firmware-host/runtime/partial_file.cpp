@@ -1,4 +1,4 @@
-#include "firmware-host/pelorus/export/partial_file.h"
+#include "firmware-host/runtime/partial_file.h"
 
 #include <cerrno>
 #include <cstring>
@@ -38,14 +38,18 @@ void PartialFile::write(std::string_view bytes) {
   failed_ = failed_ || std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size();
 }
 
-Result<> PartialFile::finish() {
-  std::error_code error;
+Result<> PartialFile::flush() {
   failed_ = failed_ || std::fflush(file_.get()) != 0;
-  if (!failed_) std::filesystem::rename(partial(), path_, error);
-  if (failed_ || error) {
-    return io_error(path_, std::string("cannot be written: ") + (error ? error.message() : std::strerror(errno)),
-                    "free space on the device");
-  }
+  if (!failed_) return Ok{};
+  return io_error(path_, std::string("cannot be written: ") + std::strerror(errno), "free space on the device");
+}
+
+Result<> PartialFile::finish() {
+  if (Result<> flushed = flush(); !flushed) return flushed;
+  std::error_code error;
+  std::filesystem::rename(partial(), path_, error);
+  if (error)
+    return io_error(path_, "cannot be put in its place: " + error.message(), "check the folder and its rights");
   file_.reset();
   return Ok{};
 }
