@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/transform.h"
+#include "drivers/synthetic/goals.h"
 #include "drivers/synthetic/pose_path.h"
 
 namespace pelorus::synthetic {
@@ -84,6 +85,7 @@ struct Scene {
   Water water;
   Light light;
   Sensor sensor;
+  Goals goals;
 
   // Another world of the same kind: every random thing of the scene derives from the seed.
   void reseed(std::uint64_t new_seed);

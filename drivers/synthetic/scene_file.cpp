@@ -112,6 +112,7 @@ void read_scene(StrictMap& map, Scene& scene) {
   map.map("water", [&](StrictMap& water) { read_water(water, scene.water); });
   map.map("light", [&](StrictMap& light) { read_light(light, scene.light); });
   map.map("sensor", [&](StrictMap& sensor) { read_sensor(sensor, scene.sensor); });
+  map.map("goals", [&](StrictMap& goals) { read_goals(goals, scene.goals); });
   scene.reseed(scene.seed);
 }
 

@@ -16,15 +16,20 @@ struct EvalArguments {
   std::string dataset;
   std::string out;
   std::string calibration;
+  std::string goals;
   bool json = false;
   EvaluationConfig config;
 };
 
 Result<int> run_verb(const EvalArguments& arguments) {
-  const Result<RunEvaluation> run =
-      evaluate_run(arguments.dataset, arguments.calibration, arguments.out, arguments.config);
+  Result<RunEvaluation> run = evaluate_run(arguments.dataset, arguments.calibration, arguments.out, arguments.config);
   std::fputs(incomplete_warning(arguments.out).c_str(), stderr);
   if (!run) return run.error();
+  if (!arguments.goals.empty()) {
+    const Result<Goals> goals = synthetic::load_goals(arguments.goals);
+    if (!goals) return goals.error();
+    run.value().goals = goals.value();
+  }
   const std::string text = arguments.json ? to_json(run.value()) + "\n" : to_table(run.value());
   std::fputs(text.c_str(), stdout);
   if (!run.value().has_truth) {
@@ -47,13 +52,17 @@ Verb add_eval(CLI::App& app) {
   parser->add_option("DATASET", arguments->dataset, "The data set the run was made from")->required();
   parser->add_option("OUT", arguments->out, "The output folder of `pelorus replay`")->required();
   parser->add_option("--calib", arguments->calibration, "The calibration file given to replay, if one was");
+  parser->add_option("--goals", arguments->goals,
+                     "File with goals in place of the data set's own (its scene's, mav0/goals.yaml, goals.yaml)");
   parser->add_flag("--json", arguments->json, "JSON instead of a table: SI units, radians");
   parser
       ->add_option("--gate-m", arguments->config.association.centre_gate_m,
                    "How far an object's points may lie from a body's centre to be that body")
       ->check(above_zero())
       ->capture_default_str();
-  parser->footer("Exit codes: 0 evaluated, 2 usage, 3 bad input or no truth, 4 calibration.");
+  parser->footer(
+      "Exit codes: 0 evaluated, 2 usage, 3 bad input or no truth, 4 calibration, 5 goals, 6 a file cannot be read.\n"
+      "Goals that are met or missed show in the table; they do not change the exit code.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }
 

@@ -33,6 +33,14 @@ std::string consistency_json(const Consistency& nees) {
       .str();
 }
 
+std::string goals_json(const Goals& goals) {
+  JsonObject json;
+  for (const synthetic::GoalField& field : synthetic::kGoalFields) {
+    if (const auto& value = goals.*field.member) json.number(field.key, *value);
+  }
+  return json.str();
+}
+
 std::string camera_json(const TrajectoryError& camera, const std::optional<Consistency>& nees) {
   JsonObject json;
   json.integer("poses", static_cast<long long>(camera.poses))
@@ -111,6 +119,7 @@ std::string to_json(const RunEvaluation& run) {
   JsonObject json;
   json.text("dataset", run.dataset)
       .text("run", run.folder)
+      .raw("goals", goals_json(run.goals))
       .raw("incomplete", run.incomplete ? json_text(*run.incomplete) : "null")
       .integer("frames", static_cast<long long>(facts.frames))
       .integer("frames_with_pose", static_cast<long long>(facts.frames_with_pose))

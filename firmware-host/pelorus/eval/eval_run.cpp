@@ -17,6 +17,9 @@ Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calib
     Result<std::optional<Truth>> truth = read_truth(dataset, calibration_file, judged.run);
     if (!truth) return truth.error();
     judged.truth = std::move(truth.value());
+    const Result<Goals> goals = goals_of(dataset);
+    if (!goals) return goals.error();
+    judged.evaluation.goals = goals.value();
   }
 
   RunEvaluation& result = judged.evaluation;

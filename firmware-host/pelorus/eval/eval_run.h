@@ -8,6 +8,7 @@
 
 #include "core/base/result.h"
 #include "core/evaluation/evaluation.h"
+#include "firmware-host/pelorus/eval/eval_goals.h"
 #include "firmware-host/pelorus/results/result_reader.h"
 
 namespace pelorus {
@@ -21,6 +22,7 @@ struct RunEvaluation {
   bool exact_truth = false;
   bool scale_known = true;
   std::string truth_origin;
+  Goals goals;                            // of the data set
   std::optional<std::string> incomplete;  // why the run's files hold less than the recording (IncompleteMark)
 };
 

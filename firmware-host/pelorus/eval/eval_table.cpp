@@ -22,13 +22,20 @@ std::string format(const char* pattern, ...) {
   return text.data();
 }
 
-// method.md, section 10.
 struct Goal {
   std::string text;  // empty = none
   bool met = false;
 };
-Goal below(double value, double limit, const char* text) { return {text, value < limit}; }
-Goal above(double value, double limit, const char* text) { return {text, value > limit}; }
+// `scale` brings both to the `unit` shown.
+Goal below(double value, const std::optional<double>& limit, double scale, const char* unit) {
+  return limit ? Goal{format("< %g %s", *limit * scale, unit), value < *limit} : Goal{};
+}
+Goal at_most(std::size_t count, const std::optional<double>& limit) {
+  return limit ? Goal{format("%g", *limit), static_cast<double>(count) <= *limit} : Goal{};
+}
+Goal above_percent(double share, const std::optional<double>& limit_percent) {
+  return limit_percent ? Goal{format("> %g %%", *limit_percent), 100 * share > *limit_percent} : Goal{};
+}
 
 std::string line(const std::string& name, const std::string& value, const Goal& goal = {},
                  const std::string& paper = "") {
@@ -77,36 +84,41 @@ std::string camera_text(const RunEvaluation& run) {
   const TrajectoryError& camera = *run.evaluation.camera;
   const bool dive = run.exact_truth;
   const bool rests = !dive && camera.path_length_m < kStandstill_m;
-  const bool road = !dive && !rests && run.scale_known;
   const bool fine = dive || rests;
-  // The goal that belongs to this kind of recording, if any.
-  const auto goal = [](bool applies, double value, double limit, const char* text) {
-    return applies ? below(value, limit, text) : Goal{};
+  const Goals& goals = run.goals;
+  const auto length_goal = [fine](double value_m, const std::optional<double>& limit_m) {
+    return fine ? below(value_m, limit_m, kCmPerM, "cm") : below(value_m, limit_m, 1, "m");
   };
+  const auto angle_goal = [](double value_rad, const std::optional<double>& limit_deg) {
+    return below(value_rad * kDegPerRad, limit_deg, 1, "deg");
+  };
+  // Absolute errors grow with the path: a goal for a shorter one says nothing.
+  const bool within_path = camera.path_length_m <= goals.camera_absolute_path_m.value_or(camera.path_length_m);
   std::string text = heading(format("Camera, %.2f m, %zu poses", camera.path_length_m, camera.poses));
-  text += line("step error, mean", length(camera.step_m.mean, fine), goal(dive, camera.step_m.mean, 4e-5, "< 0.004 cm"),
-               dive ? "0.01 cm" : "");
+  text += line("step error, mean", length(camera.step_m.mean, fine),
+               length_goal(camera.step_m.mean, goals.camera_step_m), dive ? "0.01 cm" : "");
   text += line("step error, RMSE (RPE)", length(camera.step_m.rmse, fine),
-               goal(road, camera.step_m.rmse, 0.03, "< 0.03 m"));
+               length_goal(camera.step_m.rmse, goals.camera_step_rmse_m));
   text += line("step rotation, mean", angle(camera.step_rad.mean));
   text += line("step rotation, RMSE (RPE)", angle(camera.step_rad.rmse),
-               goal(road, camera.step_rad.rmse, 0.1 / kDegPerRad, "< 0.1 deg"));
-  text += line("absolute error, mean", length(camera.absolute_m.mean, fine),
-               goal(dive, camera.absolute_m.mean, 4e-4, "< 0.04 cm"), dive ? "0.13 cm" : "");
+               angle_goal(camera.step_rad.rmse, goals.camera_step_rmse_deg));
+  text +=
+      line("absolute error, mean", length(camera.absolute_m.mean, fine),
+           within_path ? length_goal(camera.absolute_m.mean, goals.camera_absolute_m) : Goal{}, dive ? "0.13 cm" : "");
   text += line("absolute error, max", length(camera.absolute_m.max, fine),
-               goal(rests, camera.absolute_m.max, 2e-3, "< 0.2 cm"));
+               length_goal(camera.absolute_m.max, goals.camera_absolute_max_m));
   text += line("absolute rotation, mean", angle(camera.absolute_rad.mean));
   text += line("absolute rotation, max", angle(camera.absolute_rad.max),
-               goal(rests, camera.absolute_rad.max, 0.05 / kDegPerRad, "< 0.05 deg"));
+               angle_goal(camera.absolute_rad.max, goals.camera_absolute_max_deg));
   text += line("ATE, RMSE after alignment", length(camera.ate_rmse_m, fine));
   text += line("final drift", length(camera.final_drift_m, fine));
   if (camera.path_length_m >= kStandstill_m) {
     text += line("final drift over the path", format("%.3f %%", camera.final_drift_percent),
-                 goal(road, camera.final_drift_percent, 1.0, "< 1 %"));
+                 below(camera.final_drift_percent, goals.camera_drift_percent, 1, "%"));
   }
   if (camera.kitti) {
     text += line("KITTI drift, 100-800 m", format("%.3f %%", camera.kitti->translation_percent),
-                 goal(road, camera.kitti->translation_percent, 1.0, "< 1 %"));
+                 below(camera.kitti->translation_percent, goals.camera_drift_percent, 1, "%"));
     text += line("KITTI rotation, 100-800 m", format("%.4f deg/100m", camera.kitti->rotation_deg_per_100m));
   }
   // A measured truth has noise of its own, larger than ours: consistency with it would mean nothing.
@@ -142,6 +154,20 @@ std::string body_line(const BodyEvaluation& body, bool exact) {
                 body_ids(score).c_str());
 }
 
+// A row over the bodies' figures; empty without goals for them.
+std::string body_goals(const Goals& goals) {
+  const auto limit = [](const std::optional<double>& value, double scale) {
+    return value ? format("< %g", *value * scale) : std::string();
+  };
+  const std::string step_m = limit(goals.body_step_m, kCmPerM), step_deg = limit(goals.body_step_deg, 1);
+  const std::string since_m = limit(goals.body_since_birth_m, kCmPerM),
+                    since_deg = limit(goals.body_since_birth_deg, 1);
+  const std::string coverage = goals.body_coverage_percent ? format("> %g %%", *goals.body_coverage_percent) : "";
+  if ((step_m + step_deg + since_m + since_deg + coverage).empty()) return "";
+  return format("  %-12s%8s%7s%15s%8s%7s%15s %9s %8d %9s %7d  one\n", "goal", step_m.c_str(), step_deg.c_str(), "",
+                since_m.c_str(), since_deg.c_str(), "", coverage.c_str(), 0, "", 6);
+}
+
 std::string bodies_text(const RunEvaluation& run) {
   if (run.evaluation.bodies.empty()) return "";
   std::string text =
@@ -149,11 +175,7 @@ std::string bodies_text(const RunEvaluation& run) {
       "                      (ME)                         mean            max\n"
       "                   cm    deg      cm    deg      cm    deg      cm    deg  coverage switches  detected    NEES"
       "  ids\n";
-  if (run.exact_truth) {
-    text +=
-        "  goal         < 0.05 < 0.05                 < 0.5  < 0.3                   > 95 %        0                 6"
-        "  one\n";
-  }
+  text += body_goals(run.goals);
   for (const BodyEvaluation& body : run.evaluation.bodies) text += body_line(body, run.exact_truth);
   return text;
 }
@@ -163,12 +185,12 @@ std::string tracking_text(const RunEvaluation& run) {
   std::string text = heading("Objects as a whole");
   if (!run.evaluation.bodies.empty() || !tracking.false_objects.empty()) {
     text += line("right number of motions", format("%.1f %%", 100 * tracking.right_count_share),
-                 above(tracking.right_count_share, 0.97, "> 97 %"));
+                 above_percent(tracking.right_count_share, run.goals.right_count_percent));
     text += line("  1 s after each body's appearing", format("%.1f %%", 100 * tracking.right_count_settled_share));
   }
   text += line("false objects",
                format("%zu (%.1f per 1000)", tracking.false_objects.size(), tracking.false_per_1000_frames),
-               {"0", tracking.false_objects.empty()});
+               at_most(tracking.false_objects.size(), run.goals.false_objects));
   if (run.exact_truth && !run.evaluation.bodies.empty()) {
     text += consistency_line("NEES of object motion", run.evaluation.object_consistency);
   }

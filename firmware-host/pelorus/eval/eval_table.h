@@ -1,6 +1,6 @@
 #pragma once
-// The evaluation as a table for people: each figure beside the goal of method.md section 10 and what the paper reached.
-// Goals in centimetres speak of synthetic dives and are shown for exact truth only; drift goals for roads. Pure.
+// The evaluation as a table for people: each figure beside the goal that the data set has for it, if any, and what the
+// paper reached. Pure.
 
 #include <string>
 

@@ -107,6 +107,17 @@ Result<> AslWriter::write_headers(const synthetic::SyntheticSource& source) {
         << body.name << ',' << body.size_m.x() << ',' << body.size_m.y() << ',' << body.size_m.z() << '\n';
     if (!box.flush()) return io_error(*partial_, "the size of a body cannot be written");
   }
+  return write_goals(source.scene().goals);
+}
+
+Result<> AslWriter::write_goals(const synthetic::Goals& goals) {
+  const std::string text = synthetic::goals_yaml(goals);
+  if (text.empty()) return Ok{};
+  const fs::path path = *partial_ / "mav0/goals.yaml";
+  std::ofstream file(path);
+  file << "# What `pelorus eval` holds errors on this dive to, from its scene.\n" << text;
+  file.close();
+  if (!file) return io_error(path, "cannot be written");
   return Ok{};
 }
 

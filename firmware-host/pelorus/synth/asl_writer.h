@@ -1,8 +1,9 @@
 #pragma once
 // Writes a synthetic dive as an EuRoC ASL folder: mav0/cam0, mav0/cam1 (data.csv, sensor.yaml, data/<ns>.png),
 // mav0/state_groundtruth_estimate0 (T_world_body, body = rectified left camera) and, per moving body k = 1, 2, ...,
-// mav0/object<k>/data.csv (T_world_obj, visible_px) and body.csv (name, box). Nothing bears the final name before
-// everything is written, and a dive that is not finished leaves nothing behind. Thread-bound.
+// mav0/object<k>/data.csv (T_world_obj, visible_px) and body.csv (name, box); goals.yaml when the scene has goals.
+// Nothing bears the final name before everything is written, and a dive that is not finished leaves nothing behind.
+// Thread-bound.
 
 #include <filesystem>
 #include <fstream>
@@ -34,6 +35,7 @@ class AslWriter {
     void operator()(const std::filesystem::path* folder) const;
   };
   [[nodiscard]] Result<> write_headers(const synthetic::SyntheticSource& source);
+  [[nodiscard]] Result<> write_goals(const synthetic::Goals& goals);
   [[nodiscard]] Result<> write_camera(int side, const StereoCalibration& calibration, double rate_hz);
 
   std::filesystem::path folder_;
