@@ -13,8 +13,6 @@
 namespace pelorus {
 namespace {
 
-// A camera silent for so long is asked by ourselves whether it is still there.
-constexpr Duration kSuspicious = std::chrono::milliseconds(500);
 constexpr std::int64_t kLongestWaitNs = 5'000'000'000;
 
 PixelFormat pixel_format(ArvPixelFormat format) {
@@ -240,8 +238,8 @@ void AravisCamera::count_transport() {
 
 void AravisCamera::stop() {
   if (!session_) return;
-  const bool suspicious = session_->control_lost || clock_.now() - last_arrival_ > kSuspicious;
-  if (suspicious && !session_->answers()) {
+  // Asked always: one that was pulled a moment ago is not missed yet, and would hold up the end of the program.
+  if (!session_->answers()) {
     // Aravis takes up to 10 s to let go of a camera that is gone (its retries cannot be set in 0.8). The session owns
     // all that the thread touches, and neither a camera that comes back nor the end of the program waits for it.
     std::thread([gone = std::move(session_)]() mutable { gone.reset(); }).detach();

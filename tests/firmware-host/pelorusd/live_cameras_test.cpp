@@ -89,7 +89,7 @@ class LiveCameras : public ::testing::Test {
   }
   void finish() {
     service_->process->send(SIGTERM);
-    EXPECT_EQ(service_->process->wait(), 0) << service_->log();
+    EXPECT_EQ(service_->process->wait_at_most(1), 0) << "-2: still running after a second\n" << service_->log();
   }
 
   std::optional<test::FakeGvCamera> cameras_[2];
@@ -130,6 +130,21 @@ TEST_F(LiveCameras, ALeftCameraThatIsLostIsAFaultWithinFivePairsAndItsReturnEnds
   switch_on(0);
   EXPECT_TRUE(service_->wait_for_state("TRACKING")) << service_->log();
   finish();
+}
+
+// While it searches for the camera, and while it does not know yet that the camera is gone.
+TEST_F(LiveCameras, ACameraThatIsLostDoesNotHoldUpTheStop) {
+  start(14);
+  cameras_[0].reset();
+  EXPECT_TRUE(service_->wait_for_state("CAMERA_FAULT", "no pictures")) << service_->log();
+  finish();
+  EXPECT_NE(service_->log().find("stopped after"), std::string::npos) << service_->log();
+  switch_on(0);
+  start(15);
+  cameras_[0].reset();
+  cameras_[1].reset();
+  finish();
+  EXPECT_NE(service_->log().find("stopped after"), std::string::npos) << service_->log();
 }
 
 TEST_F(LiveCameras, AClockThatJumpsDegradesWithinFivePairsAndRecovers) {
