@@ -17,17 +17,13 @@
 
 #include "core/frontend/klt.h"
 #include "tests/core/frontend/analytic_texture.h"
+#include "tests/support/real_data.h"
 
 namespace pelorus {
 namespace {
 
 using test::AnalyticTexture;
 using test::TexturePlace;
-
-std::filesystem::path data_dir() {
-  const char* set = std::getenv("PELORUS_DATA_DIR");
-  return set != nullptr ? std::filesystem::path(set) : std::filesystem::path(PELORUS_SOURCE_DIR) / "../shared/data";
-}
 
 struct Point {
   float u, v;
@@ -210,9 +206,9 @@ std::vector<Point> points_with_truth(const cv::Mat& image, const cv::Mat& flow_u
 }
 
 TEST(KltAccuracy, NoWorseThanOpenCvOnRubberWhale) {
-  const auto folder = data_dir() / "flow/rubberwhale";
-  std::ifstream file(folder / "flow10.flo", std::ios::binary);
-  if (!file) GTEST_SKIP() << folder << " is not there";
+  PELORUS_USE_REAL_DATA(path, "flow/rubberwhale");
+  std::ifstream file(path / "flow10.flo", std::ios::binary);
+  ASSERT_TRUE(file) << path << " holds no flow10.flo";
   float magic = 0;
   std::int32_t size[2] = {};
   file.read(reinterpret_cast<char*>(&magic), 4);
@@ -222,8 +218,8 @@ TEST(KltAccuracy, NoWorseThanOpenCvOnRubberWhale) {
   cv::Mat parts[2];
   cv::split(flow, parts);
   const cv::Mat valid = cv::abs(parts[0]) < 1e3F;
-  const cv::Mat from = cv::imread((folder / "frame10.png").string(), cv::IMREAD_GRAYSCALE);
-  const cv::Mat to = cv::imread((folder / "frame11.png").string(), cv::IMREAD_GRAYSCALE);
+  const cv::Mat from = cv::imread((path / "frame10.png").string(), cv::IMREAD_GRAYSCALE);
+  const cv::Mat to = cv::imread((path / "frame11.png").string(), cv::IMREAD_GRAYSCALE);
   ASSERT_FALSE(from.empty() || to.empty());
   const std::vector<Point> points = points_with_truth(from, parts[0], parts[1], valid);
   const Tracked ours = track_ours(from, to, points);
@@ -235,15 +231,15 @@ TEST(KltAccuracy, NoWorseThanOpenCvOnRubberWhale) {
 }
 
 TEST(KltAccuracy, NoWorseThanOpenCvOnKitti2012) {
-  const auto folder = data_dir() / "kitti2012_flow";
-  if (!std::filesystem::exists(folder / "flow_noc")) GTEST_SKIP() << folder << " is not there";
+  PELORUS_USE_REAL_DATA(path, "kitti2012_flow");
+  ASSERT_TRUE(std::filesystem::exists(path / "flow_noc")) << path << " holds no flow_noc";
   Tracked all_ours;
   Tracked all_opencv;
   for (const char* scene : {"000027", "000074", "000138", "000151", "000174"}) {
     const std::string name(scene);
-    const cv::Mat raw = cv::imread((folder / "flow_noc" / (name + "_10.png")).string(), cv::IMREAD_UNCHANGED);
-    const cv::Mat from = cv::imread((folder / "image_0" / (name + "_10.png")).string(), cv::IMREAD_GRAYSCALE);
-    const cv::Mat to = cv::imread((folder / "image_0" / (name + "_11.png")).string(), cv::IMREAD_GRAYSCALE);
+    const cv::Mat raw = cv::imread((path / "flow_noc" / (name + "_10.png")).string(), cv::IMREAD_UNCHANGED);
+    const cv::Mat from = cv::imread((path / "image_0" / (name + "_10.png")).string(), cv::IMREAD_GRAYSCALE);
+    const cv::Mat to = cv::imread((path / "image_0" / (name + "_11.png")).string(), cv::IMREAD_GRAYSCALE);
     ASSERT_FALSE(raw.empty() || from.empty() || to.empty()) << name;
     cv::Mat parts[3];
     cv::split(raw, parts);  // blue: valid, green: v, red: u
