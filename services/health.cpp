@@ -65,19 +65,24 @@ TimingReport Health::timing(double period_s) {
 }
 
 void Health::report(Timestamp now, HealthReport& report) {
-  report.time = now;
-  report.state = state_;
-  report.reason = reason_;
   const bool first = last_report_ == Timestamp{};
-  report.timing = timing(first ? 0 : seconds(now - last_report_));
-  report.picture.sigma_px = sigma_px_;
-  report.counters.results_published = results_;
-  report.counters.deadline_misses = deadline_misses_;
-  report.counters.losses_of_track = static_cast<std::uint64_t>(std::max(0, reset_counter_));
+  last_timing_ = timing(first ? 0 : seconds(now - last_report_));
+  report_again(now, report);
   last_report_ = now;
   period_results_ = 0;
   period_pairs_ = 0;
   for (std::vector<double>* values : {&latency_ms_, &late_ms_, &step_ms_, &interval_ms_}) values->clear();
+}
+
+void Health::report_again(Timestamp now, HealthReport& report) const {
+  report.time = now;
+  report.state = state_;
+  report.reason = reason_;
+  report.timing = last_timing_;
+  report.picture.sigma_px = sigma_px_;
+  report.counters.results_published = results_;
+  report.counters.deadline_misses = deadline_misses_;
+  report.counters.losses_of_track = static_cast<std::uint64_t>(std::max(0, reset_counter_));
 }
 
 }  // namespace pelorus

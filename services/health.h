@@ -17,6 +17,8 @@ class Health {
   void add(const ReleaseSample& sample);
   // Fills timing, state, and the counters that follow from samples; what was added is then forgotten, totals are not.
   void report(Timestamp now, HealthReport& report);
+  // Between two of those: state and totals as they are now, timing as it was reported last.
+  void report_again(Timestamp now, HealthReport& report) const;
 
   [[nodiscard]] VisionState state() const { return state_; }
   [[nodiscard]] StateReason reason() const { return reason_; }
@@ -37,6 +39,7 @@ class Health {
   std::uint64_t results_ = 0;
   std::uint64_t deadline_misses_ = 0;
   int reset_counter_ = 0;
+  TimingReport last_timing_;
 };
 
 }  // namespace pelorus

@@ -1,5 +1,6 @@
 #pragma once
-// What VIS_HEALTH says, once a second; also the source of log lines. Units in the names; NaN = unknown. Pure data.
+// What VIS_HEALTH says, once a second and at changes; also the source of log lines. Units in the names; NaN = unknown.
+// Pure data.
 
 #include <cstdint>
 #include <limits>
@@ -13,7 +14,7 @@ namespace pelorus {
 
 inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// Of the time since the previous report.
+// Of the last full period of reports.
 struct TimingReport {
   double pairs_rate_hz = 0;
   double results_rate_hz = 0;
@@ -45,6 +46,18 @@ struct CounterReport {
   std::uint64_t lcm_errors = 0;
   std::uint64_t lcm_reconnects = 0;
   std::uint64_t previews_skipped = 0;
+  std::uint64_t pictures_incomplete = 0;
+  std::uint64_t packets_missing = 0;
+  std::uint64_t packets_resent = 0;
+  std::uint64_t camera_reopens = 0;
+  std::uint64_t can_sets_sent = 0;
+  std::uint64_t can_sets_dropped = 0;
+  std::uint64_t can_sets_unheard = 0;
+  std::uint64_t can_error_frames = 0;
+  std::uint64_t can_bus_offs = 0;
+  std::uint64_t recorder_pairs_written = 0;
+  std::uint64_t recorder_pairs_dropped = 0;
+  std::uint64_t recorder_pairs_failed = 0;
 };
 
 struct PictureReport {
@@ -75,6 +88,7 @@ struct HealthReport {
   std::string version;
   std::string recorder_text;
   std::string can_text;
+  std::string privileges_text;
   std::string config_hash;
   std::string calibration_hash;
 };

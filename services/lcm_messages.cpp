@@ -129,37 +129,35 @@ vis_tracks_t tracks_message(const Publication& publication, const BodyFrames& fr
   return m;
 }
 
-bot_core::pose_t pose_message(const Publication& publication, const BodyFrames& frames) {
+std::optional<bot_core::pose_t> pose_message(const Publication& publication, const BodyFrames& frames) {
+  const BodyTwist twist = body_twist(publication.result, frames, publication.step);
+  if (!twist.valid) return std::nullopt;
   bot_core::pose_t m{};
   m.utime = utime_of(publication.result.capture_time);
   put_transform(frames.pose_of_body(publication.result.T_world_cam), m.pos, m.orientation);
-  const BodyTwist twist = body_twist(publication.result, frames, publication.step);
   put_point(twist.twist.head<3>(), m.vel);
   put_point(twist.twist.tail<3>(), m.rotation_rate);
   return m;
 }
 
-vis_health_t health_message(const HealthReport& report) {
-  const auto count = [](std::uint64_t events) { return static_cast<std::int64_t>(events); };
-  vis_health_t m{};
-  m.utime = utime_of(report.time);
-  m.seq = count(report.seq);
-  m.uptime_s = report.uptime_s;
-  m.state = static_cast<std::int8_t>(report.state);
-  m.state_text = to_text(report.state);
-  m.reason_text = to_text(report.reason);
-  m.version = report.version;
-  m.pairs_rate_hz = report.timing.pairs_rate_hz;
-  m.results_rate_hz = report.timing.results_rate_hz;
-  m.interval_max_ms = report.timing.interval_max_ms;
-  m.interval_jitter_ms = report.timing.interval_jitter_ms;
-  m.latency_p50_ms = report.timing.latency_p50_ms;
-  m.latency_p99_ms = report.timing.latency_p99_ms;
-  m.latency_max_ms = report.timing.latency_max_ms;
-  m.release_jitter_ms = report.timing.release_jitter_ms;
-  m.step_p50_ms = report.timing.step_p50_ms;
-  m.step_max_ms = report.timing.step_max_ms;
-  const CounterReport& c = report.counters;
+namespace {
+
+std::int64_t count(std::uint64_t events) { return static_cast<std::int64_t>(events); }
+
+void put_timing(const TimingReport& timing, vis_health_t& m) {
+  m.pairs_rate_hz = timing.pairs_rate_hz;
+  m.results_rate_hz = timing.results_rate_hz;
+  m.interval_max_ms = timing.interval_max_ms;
+  m.interval_jitter_ms = timing.interval_jitter_ms;
+  m.latency_p50_ms = timing.latency_p50_ms;
+  m.latency_p99_ms = timing.latency_p99_ms;
+  m.latency_max_ms = timing.latency_max_ms;
+  m.release_jitter_ms = timing.release_jitter_ms;
+  m.step_p50_ms = timing.step_p50_ms;
+  m.step_max_ms = timing.step_max_ms;
+}
+
+void put_counters(const CounterReport& c, vis_health_t& m) {
   m.pairs_captured = count(c.pairs_captured);
   m.results_published = count(c.results_published);
   m.deadline_misses = count(c.deadline_misses);
@@ -176,6 +174,33 @@ vis_health_t health_message(const HealthReport& report) {
   m.lcm_errors = count(c.lcm_errors);
   m.lcm_reconnects = count(c.lcm_reconnects);
   m.previews_skipped = count(c.previews_skipped);
+  m.pictures_incomplete = count(c.pictures_incomplete);
+  m.packets_missing = count(c.packets_missing);
+  m.packets_resent = count(c.packets_resent);
+  m.camera_reopens = count(c.camera_reopens);
+  m.can_sets_sent = count(c.can_sets_sent);
+  m.can_sets_dropped = count(c.can_sets_dropped);
+  m.can_sets_unheard = count(c.can_sets_unheard);
+  m.can_error_frames = count(c.can_error_frames);
+  m.can_bus_offs = count(c.can_bus_offs);
+  m.recorder_pairs_written = count(c.recorder_pairs_written);
+  m.recorder_pairs_dropped = count(c.recorder_pairs_dropped);
+  m.recorder_pairs_failed = count(c.recorder_pairs_failed);
+}
+
+}  // namespace
+
+vis_health_t health_message(const HealthReport& report) {
+  vis_health_t m{};
+  m.utime = utime_of(report.time);
+  m.seq = count(report.seq);
+  m.uptime_s = report.uptime_s;
+  m.state = static_cast<std::int8_t>(report.state);
+  m.state_text = to_text(report.state);
+  m.reason_text = to_text(report.reason);
+  m.version = report.version;
+  put_timing(report.timing, m);
+  put_counters(report.counters, m);
   m.sync_error_ms = report.picture.sync_error_ms;
   m.exposure_ms = report.picture.exposure_ms;
   m.mean_grey = report.picture.mean_grey;
@@ -187,6 +212,7 @@ vis_health_t health_message(const HealthReport& report) {
   m.disk_free_gb = report.host.disk_free_gb;
   m.recorder_text = report.recorder_text;
   m.can_text = report.can_text;
+  m.privileges_text = report.privileges_text;
   m.config_hash = report.config_hash;
   m.calibration_hash = report.calibration_hash;
   return m;

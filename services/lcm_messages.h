@@ -3,6 +3,7 @@
 // and a false flag, never a zero or an old value. Pure; allocates (publish thread only).
 
 #include <bot_core/pose_t.hpp>
+#include <optional>
 #include <pelorus/vis_health_t.hpp>
 #include <pelorus/vis_odom_t.hpp>
 #include <pelorus/vis_tracks_t.hpp>
@@ -15,8 +16,8 @@ namespace pelorus {
 
 [[nodiscard]] vis_odom_t odom_message(const Publication& publication, const BodyFrames& frames);
 [[nodiscard]] vis_tracks_t tracks_message(const Publication& publication, const BodyFrames& frames);
-// Call only for a publication whose pose is valid.
-[[nodiscard]] bot_core::pose_t pose_message(const Publication& publication, const BodyFrames& frames);
+// None without a pose and a velocity: the message has no flag for what is unknown.
+[[nodiscard]] std::optional<bot_core::pose_t> pose_message(const Publication& publication, const BodyFrames& frames);
 [[nodiscard]] vis_health_t health_message(const HealthReport& report);
 
 // Nanoseconds to the microseconds of the wire, rounded down.

@@ -24,7 +24,8 @@ void LcmPublisher::send(const std::string& channel, const Message& message) {
 void LcmPublisher::publish(const Publication& publication) {
   send(odom_, odom_message(publication, frames_));
   send(tracks_, tracks_message(publication, frames_));
-  if (publication.result.pose_valid) send(pose_, pose_message(publication, frames_));
+  // pose_t has no flag: who reads its velocity believes it. So nothing is said until there is one.
+  if (const auto pose = pose_message(publication, frames_)) send(pose_, *pose);
 }
 
 void LcmPublisher::publish_health(const HealthReport& report) { send(health_, health_message(report)); }

@@ -17,7 +17,7 @@ Vision::Vision(const VisionParts& parts, const PipelineConfig& pipeline, const C
     : parts_(parts),
       config_(pipeline),
       timing_(timing),
-      frame_timeout_(from_ms(watch.frame_timeout_ms)),
+      frame_timeout_(watch.frame_timeout_ms),
       watch_(watch),
       pipeline_(std::make_unique<Pipeline>(pipeline, parts.rectifier.rig(), parts.workers)),
       thread_([this, prepare = std::move(on_thread_start)](const std::stop_token& stop) {
@@ -45,11 +45,11 @@ void Vision::run(const std::stop_token& stop) {
   while (!stop.stop_requested()) {
     turns_.add();
     obey();
-    const Duration until_missing = last_heard_ + frame_timeout_ - parts_.clock.now();
+    const Duration until_missing = last_heard_ + frame_timeout_.value() - parts_.clock.now();
     const StereoPair pair = parts_.sync.newest(std::clamp(until_missing, Duration(0), kLongestWait));
     if (pair) {
       take(pair);
-    } else if (parts_.clock.now() - last_heard_ >= frame_timeout_) {
+    } else if (parts_.clock.now() - last_heard_ >= frame_timeout_.value()) {
       tell_missing();
     }
   }
@@ -68,6 +68,8 @@ void Vision::obey() {
 }
 
 void Vision::take(const StereoPair& pair) {
+  last_heard_ = parts_.clock.now();  // before the step: silence is told by the time of the pairs, not of their work
+  missing_ = false;
   const Circumstances circumstances = look(pair);
   if (parts_.recorder != nullptr) {
     parts_.recorder->offer(circumstances.capture.capture_time, pair.left(), pair.right());
@@ -87,8 +89,6 @@ void Vision::take(const StereoPair& pair) {
     parts_.preview->offer(left, publication, usable ? pipeline_->points() : std::span<const PointView>{});
   }
   post(publication, time + from_ms(timing_.latency_ms));
-  last_heard_ = parts_.clock.now();
-  missing_ = false;
 }
 
 Circumstances Vision::look(const StereoPair& pair) {
@@ -103,6 +103,7 @@ Circumstances Vision::look(const StereoPair& pair) {
   if (c.pairs_missed > 0) pairs_missed_.add(c.pairs_missed);
   c.standby = parts_.control.standby.load(std::memory_order_relaxed);
   c.capture = watch_.look(pair.capture_time, pair.arrival, pair.left(), pair.right());
+  frame_timeout_.learn(c.capture.capture_time, step);
   if (c.capture.time_jumped) time_jumps_.add();
   // The driver may have replaced a stamp already, and counted it.
   const bool by_arrival = pair.first->time_source == TimeSource::arrival ||

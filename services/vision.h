@@ -16,6 +16,7 @@
 #include "drivers/capture_clock.h"
 #include "drivers/stereo_sync.h"
 #include "services/capture_watch.h"
+#include "services/frame_timeout.h"
 #include "services/load_shedding.h"
 #include "services/preview.h"
 #include "services/recorder.h"
@@ -74,7 +75,7 @@ class Vision {
   VisionParts parts_;
   PipelineConfig config_;
   TimingConfig timing_;
-  Duration frame_timeout_;
+  FrameTimeout frame_timeout_;
   CaptureWatch watch_;
   std::unique_ptr<Pipeline> pipeline_;
   LoadShedding shedding_;

@@ -20,6 +20,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr auto kTick = std::chrono::milliseconds(50);
 constexpr auto kHealthPeriod = std::chrono::seconds(1);
+constexpr auto kLeastBetweenChanges = std::chrono::milliseconds(100);
 constexpr auto kLongestStandstill = std::chrono::milliseconds(2000);
 
 sigset_t handled_signals() {
@@ -60,6 +61,9 @@ struct App::Parts {
   Timestamp started;
   std::uint64_t reports = 0;
   Clock::time_point next_health;
+  std::string outputs;  // state of bus, recorder and LCM as reported last
+  Clock::time_point next_change;
+  HostReport host_report;
   Clock::time_point next_feed;
   bool ready = false;
   std::string state;
@@ -127,6 +131,9 @@ void App::tick() {
   if (now >= p.next_health) {
     p.next_health = std::max(p.next_health + kHealthPeriod, now);
     report_health();
+  } else if (now >= p.next_change && outputs_state(*p.service) != p.outputs) {
+    p.next_change = now + kLeastBetweenChanges;
+    report_changes();
   }
   feed_watchdog();
 }
@@ -177,36 +184,42 @@ void App::report_health() {
   report = HealthReport{};
   const Timestamp now = p.service->clock.now();
   p.health.report(now, report);
+  p.host_report = p.host.read();
+  send_report(report, now);
+}
+
+// A bus, a disk or a network that fails is not kept for the rest of a second.
+void App::report_changes() {
+  Parts& p = *parts_;
+  HealthReport& report = p.service->desk.health.draft();
+  report = HealthReport{};
+  const Timestamp now = p.service->clock.now();
+  p.health.report_again(now, report);
+  send_report(report, now);
+}
+
+void App::send_report(HealthReport& report, Timestamp now) {
+  Parts& p = *parts_;
   report.seq = ++p.reports;
   report.uptime_s = seconds(now - p.started);
-  gather_capture(p.service->head->status(), p.service->head->sync().statistics(), report);
-  if (p.service->vision) gather_vision(p.service->vision->status(), report);
-  report.counters.results_dropped = p.service->desk.results.dropped();
-  if (p.service->lcm) {
-    report.counters.lcm_errors = p.service->lcm->link().errors();
-    report.counters.lcm_reconnects = p.service->lcm->link().reconnects();
-  }
-  report.counters.previews_skipped = p.service->preview->skipped();
-  report.host = p.host.read();
+  report.host = p.host_report;
+  p.outputs = outputs_state(*p.service);
+  gather_service(*p.service, report);
   report.version = PELORUS_VERSION;
-  report.can_text =
-      p.service->can ? status_text(p.service->can->status(), p.service->config.can.interface) : std::string("off");
   if (p.service->can && !p.service->can->status().trouble.empty()) {
     p.log.limited(LogLevel::warning, "can", p.service->can->status().trouble, now);
   }
-  const RecorderStatus recorder = p.service->recorder->status();
-  report.recorder_text = summary(recorder);
-  if (recorder.state == RecorderState::disk_full || recorder.state == RecorderState::failed) {
+  const RecorderState recorder = p.service->recorder->status().state;
+  if (recorder == RecorderState::disk_full || recorder == RecorderState::failed) {
     p.log.limited(LogLevel::warning, "recorder", "recorder: " + report.recorder_text, now);
   }
-  report.config_hash = p.service->config_fingerprint;
-  report.calibration_hash = p.service->calibration_fingerprint;
   std::array<char, 160> status{};
   std::snprintf(status.data(), status.size(), "STATUS=%s%s%s, %.1f Hz, latency %.1f ms", to_text(report.state),
                 report.reason == StateReason::none ? "" : ": ", to_text(report.reason), report.timing.results_rate_hz,
                 report.timing.latency_p50_ms);
   p.manager.notify(status.data());
-  if (p.service->lcm && !p.service->lcm->link().is_open()) {
+  // Opened with the first message: before, nothing is known of it.
+  if (p.service->lcm && !p.service->lcm->link().is_open() && report.counters.lcm_errors > 0) {
     p.log.limited(LogLevel::warning, "lcm", "LCM cannot be reached at " + p.service->config.lcm.url, now);
   }
   p.service->desk.health.post();

@@ -1,11 +1,13 @@
 #pragma once
 // App: the service, put together from its configuration; the only place where the concrete parts meet. Threads are
 // built from the buses to the cameras and ended in the opposite order. run() is the main thread's work: signals, health
-// once a second, the watchdog, the log. Thread-bound to main, whose signals must be blocked before (block_signals).
+// once a second and at changes, the watchdog, the log. Thread-bound to main, whose signals must be blocked before
+// (block_signals).
 
 #include <memory>
 
 #include "core/base/result.h"
+#include "core/base/time.h"
 #include "firmware-host/runtime/log_sink.h"
 #include "firmware-host/runtime/service_config.h"
 
@@ -13,6 +15,8 @@ namespace pelorus {
 
 // SIGTERM, SIGINT, SIGHUP for this thread and all it will start: run() takes them one by one.
 void block_signals();
+
+struct HealthReport;
 
 class App {
  public:
@@ -29,6 +33,8 @@ class App {
   void tick();
   void take_samples();
   void report_health();
+  void report_changes();
+  void send_report(HealthReport& report, Timestamp now);
   void feed_watchdog();
   void log_cameras();
   void log_state();

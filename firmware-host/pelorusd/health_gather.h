@@ -1,15 +1,21 @@
 #pragma once
 // Counters of all parts of the service into those of one health report. Pure but for reading the counters.
 
+#include <string>
 #include <vector>
 
-#include "services/capture.h"
-#include "services/health_report.h"
-#include "services/vision.h"
+#include "firmware-host/pelorusd/service_threads.h"
 
 namespace pelorus {
 
 void gather_capture(const std::vector<CaptureStatus>& cameras, const SyncStatistics& sync, HealthReport& report);
 void gather_vision(const VisionStatus& vision, HealthReport& report);
+void gather_can(const CanStatus& can, const std::string& interface, HealthReport& report);
+void gather_recorder(const RecorderStatus& recorder, HealthReport& report);
+// All of the above and what else the parts know.
+void gather_service(const ServiceThreads& service, HealthReport& report);
+
+// Words that change when the CAN bus, the recorder or LCM begins or ceases to work, and at nothing else.
+[[nodiscard]] std::string outputs_state(const ServiceThreads& service);
 
 }  // namespace pelorus

@@ -37,12 +37,15 @@ Result<Rigid3> ServiceThreads::prepare(LogSink& log) {
 }
 
 // Whether threads may be scheduled in real time.
-bool ServiceThreads::ask_the_system(LogSink& log) const {
+bool ServiceThreads::ask_the_system(LogSink& log) {
   if (config.process.lock_memory) {
-    if (const std::string why = lock_memory(); !why.empty()) log.line(LogLevel::warning, "memory not locked: " + why);
+    const std::string why = lock_memory();
+    privileges.note_memory_lock(why);
+    if (!why.empty()) log.line(LogLevel::warning, "memory not locked: " + why);
   }
   if (!config.process.realtime) return false;
   const std::string why = realtime_refusal();
+  privileges.note_realtime(why);
   if (!why.empty()) log.line(LogLevel::warning, "no real-time scheduling: " + why);
   if (const std::string kept = pin_refusal(); why.empty() && config.process.pin && !kept.empty()) {
     log.line(LogLevel::warning, "threads not pinned to processors: " + kept);
@@ -51,8 +54,12 @@ bool ServiceThreads::ask_the_system(LogSink& log) const {
 }
 
 void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
-  const auto prepared = [realtime](const char* name, ThreadClass wanted, int processor = kAnyProcessor) {
-    return [=] { (void)set_thread(name, realtime ? wanted : ThreadClass::normal, processor); };
+  const auto prepared = [this, realtime](const char* name, ThreadClass wanted, int processor = kAnyProcessor) {
+    const bool real = wanted == ThreadClass::background || realtime;
+    return [=, this] {
+      const std::string why = set_thread(name, real ? wanted : ThreadClass::normal, processor);
+      privileges.note_thread(name, processor != kAnyProcessor, why);
+    };
   };
   if (config.lcm.enabled) {
     lcm = std::make_unique<LcmPublisher>(config.lcm, T_body_cam);
@@ -69,14 +76,14 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
                                                prepared("publish", ThreadClass::fifo_release));
   preview = std::make_unique<Preview>(PreviewConfig{config.lcm.preview_rate_hz, config.lcm.preview_max_bytes},
                                       rectifier->rig(), desk.previews, desk.wake,
-                                      [] { (void)set_thread("preview", ThreadClass::background); });
+                                      prepared("preview", ThreadClass::background));
   const CameraIntrinsics& view = head->calibration().left;
   recorder = std::make_unique<Recorder>(
       config.recorder, FrameFormat{view.width, view.height, 1},
       [this](const std::filesystem::path& folder) {
         return write_calibration(head->calibration(), CalibrationFormat::euroc, folder);
       },
-      [] { (void)set_thread("record", ThreadClass::background); });
+      prepared("record", ThreadClass::background));
   const bool pinned = realtime && config.process.pin;
   workers.reset(new PipelineThreads{
       SideThread(prepared("klt", ThreadClass::fifo_middle, pinned ? processor_to_bind(1) : kAnyProcessor)),

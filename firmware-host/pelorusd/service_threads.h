@@ -10,6 +10,7 @@
 
 #include "firmware-host/pelorusd/stereo_head.h"
 #include "firmware-host/runtime/log_sink.h"
+#include "firmware-host/runtime/privileges.h"
 #include "services/can/can_publisher.h"
 #include "services/command_listener.h"
 #include "services/lcm_publisher.h"
@@ -29,6 +30,7 @@ struct ServiceThreads {
   CaptureClock clock;
   std::string config_fingerprint;
   std::string calibration_fingerprint;
+  PrivilegeLedger privileges;
   std::unique_ptr<StereoHead> head;
   std::optional<Rectifier> rectifier;
   PublishDesk desk;
@@ -46,7 +48,7 @@ struct ServiceThreads {
  private:
   explicit ServiceThreads(const ServiceConfig& c) : config(c) {}
   [[nodiscard]] Result<Rigid3> prepare(LogSink& log);
-  [[nodiscard]] bool ask_the_system(LogSink& log) const;
+  [[nodiscard]] bool ask_the_system(LogSink& log);
   void build(const Rigid3& T_body_cam, bool realtime);
   [[nodiscard]] CommandAnswer obey(const std::string& command);
 };

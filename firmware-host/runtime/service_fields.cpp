@@ -49,7 +49,7 @@ void list(FieldList& f, TimingConfig& c) {
 
 void list(FieldList& f, CaptureWatchConfig& c) {
   f.section("capture");
-  f.add("frame_timeout_ms", c.frame_timeout_ms, 10, 10000);
+  f.add("frame_timeout_ms", c.frame_timeout_ms, 0, 10000);
   f.add("frozen_pairs", c.frozen_pairs, 0, 1000);
   f.add("time_jump_ms", c.time_jump_ms, 1, 10000);
 }

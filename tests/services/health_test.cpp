@@ -42,6 +42,24 @@ TEST(Health, TellsRatesAndLatenciesOfThePeriodOnly) {
   EXPECT_EQ(report.counters.results_published, 100U);
 }
 
+// Between two regular reports: what is new is told, what is measured over a period stays as it was and goes on.
+TEST(Health, AReportInBetweenTakesNothingFromThePeriod) {
+  Health health;
+  HealthReport report;
+  health.report(Timestamp{1'000'000'000}, report);
+  for (int i = 1; i <= 10; ++i) health.add(sample_of(i));
+  health.report(Timestamp{2'000'000'000}, report);
+  for (int i = 11; i <= 15; ++i) health.add(sample_of(i));
+  HealthReport between;
+  health.report_again(Timestamp{2'250'000'000}, between);
+  EXPECT_EQ(between.time.ns, 2'250'000'000);
+  EXPECT_EQ(between.counters.results_published, 15U);
+  EXPECT_NEAR(between.timing.pairs_rate_hz, 10, 1e-9);
+  for (int i = 16; i <= 30; ++i) health.add(sample_of(i));
+  health.report(Timestamp{3'000'000'000}, report);
+  EXPECT_NEAR(report.timing.pairs_rate_hz, 20, 1e-9);
+}
+
 TEST(Health, CountsMissesAndKeepsTheLastState) {
   Health health;
   ReleaseSample s = sample_of(1);

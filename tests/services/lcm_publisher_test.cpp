@@ -97,6 +97,30 @@ TEST_F(LcmBus, WithoutAPoseNumbersAreUnknownAndNoTrackIsTold) {
   EXPECT_FALSE(pose.wait_for(1, 0.2)) << "POSE_BODY cannot say that it is invalid: it must be silent";
 }
 
+// The first pair has a pose and no motion yet.
+TEST_F(LcmBus, WithoutAVelocityThePoseMessageIsSilentRatherThanAtRest) {
+  test::Listener<vis_odom_t> odom(config_.url, "TEST.VIS_ODOM");
+  test::Listener<bot_core::pose_t> pose(config_.url, "TEST.POSE_BODY");
+  LcmPublisher publisher(config_, T_body_cam());
+  Publication sent = test::rich_publication();
+  const std::int64_t second_utime = utime_of(sent.result.capture_time);
+  sent.result.capture_time = sent.result.capture_time + -sent.step;
+  sent.step = Duration::zero();
+  publisher.publish(sent);
+  const Publication moving = test::rich_publication();
+  publisher.publish(moving);
+  ASSERT_TRUE(odom.wait_for(2));
+  EXPECT_TRUE(odom.messages[0].pose_valid);
+  EXPECT_FALSE(odom.messages[0].velocity_valid);
+  ASSERT_TRUE(pose.wait_for(1));
+  EXPECT_FALSE(pose.wait_for(2, 0.2));
+  EXPECT_EQ(pose.messages[0].utime, second_utime);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_DOUBLE_EQ(pose.messages[0].vel[i], odom.messages[1].vel_body_mps[i]);
+    EXPECT_DOUBLE_EQ(pose.messages[0].rotation_rate[i], odom.messages[1].rate_body_radps[i]);
+  }
+}
+
 TEST_F(LcmBus, TracksArriveAndTheirMotionCarriesTheCentroid) {
   test::Listener<vis_tracks_t> listener(config_.url, "TEST.VIS_TRACKS");
   LcmPublisher publisher(config_, T_body_cam());
@@ -134,6 +158,15 @@ TEST_F(LcmBus, HealthAndPictureArrive) {
   report.state = VisionState::camera_fault;
   report.reason = StateReason::no_pictures;
   report.config_hash = "0123456789abcdef";
+  report.privileges_text = "real time, memory locked, 2 threads pinned";
+  std::uint64_t number = 100;
+  CounterReport& c = report.counters;
+  for (std::uint64_t* counter :
+       {&c.pictures_incomplete, &c.packets_missing, &c.packets_resent, &c.camera_reopens, &c.can_sets_sent,
+        &c.can_sets_dropped, &c.can_sets_unheard, &c.can_error_frames, &c.can_bus_offs, &c.recorder_pairs_written,
+        &c.recorder_pairs_dropped, &c.recorder_pairs_failed}) {
+    *counter = number++;
+  }
   publisher.publish_health(report);
   PreviewPicture picture;
   picture.capture_time = Timestamp{9'000'000};
@@ -150,6 +183,13 @@ TEST_F(LcmBus, HealthAndPictureArrive) {
   EXPECT_EQ(health.messages[0].reason_text, "no pictures");
   EXPECT_EQ(health.messages[0].config_hash, "0123456789abcdef");
   EXPECT_TRUE(std::isnan(health.messages[0].temperature_degc));
+  const vis_health_t& got = health.messages[0];
+  EXPECT_EQ(got.privileges_text, report.privileges_text);
+  const std::vector<std::int64_t> counters{
+      got.pictures_incomplete, got.packets_missing,        got.packets_resent,         got.camera_reopens,
+      got.can_sets_sent,       got.can_sets_dropped,       got.can_sets_unheard,       got.can_error_frames,
+      got.can_bus_offs,        got.recorder_pairs_written, got.recorder_pairs_dropped, got.recorder_pairs_failed};
+  for (std::size_t i = 0; i < counters.size(); ++i) EXPECT_EQ(counters[i], 100 + static_cast<std::int64_t>(i));
   EXPECT_EQ(image.messages[0].size, 60000);
   EXPECT_EQ(image.messages[0].data, picture.jpeg);
   EXPECT_EQ(image.channels[0], "TEST.VIS_IMAGE_LEFT");

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 #include "services/publish_thread.h"
 #include "tests/drivers/synthetic/small_dive.h"
 
@@ -26,15 +29,15 @@ class VisionBench : public ::testing::Test {
                                        PipelineConfig{}, watch_, TimingConfig{});
   }
   // The next pair of the dive, or `frame` of it again, through the ring and vision.
-  Publication pass(int frame) {
+  Publication pass(int frame) { return pass(frame, clock_.now()); }
+  Publication pass(int frame, Timestamp taken) {
     source_.render(frame, pair_);
     CameraFrame& slot = ring_.slot();
     slot.resize({pair_.left.width(), pair_.left.height(), 2});
     slot.view[0].assign(pair_.left.view());
     slot.view[1].assign(pair_.right.view());
     slot.seq = ++camera_seq_;
-    slot.mid_exposure = clock_.now();
-    slot.arrival = slot.mid_exposure;
+    slot.mid_exposure = slot.arrival = taken;
     slot.time_source = time_source_;
     ring_.publish();
     return result();
@@ -100,6 +103,22 @@ TEST_F(VisionBench, SilenceIsSpokenOfAndEndsWithTheNextPair) {
   while (!seen.has_picture) seen = result();
   EXPECT_EQ(seen.result.state, VisionState::init);
   EXPECT_EQ(vision_->status().missing_spells, 1U);
+}
+
+// Stamped 0.3 s apart: the silence is longer than the half second of a rate that is not known.
+TEST_F(VisionBench, SilenceIsToldAfterFourPeriodsOfTheRateThatWasSeen) {
+  watch_.frame_timeout_ms = 0;
+  start();
+  Timestamp last;
+  const Timestamp first = clock_.now();
+  for (int frame = 0; frame < 6; ++frame) {
+    last = clock_.now();
+    Publication seen = pass(frame, first + frame * std::chrono::milliseconds(300));
+    while (!seen.has_picture) seen = result();
+  }
+  const Publication missing = result();
+  EXPECT_EQ(missing.reason, StateReason::no_pictures);
+  EXPECT_GE(1e3 * seconds(missing.result.capture_time - last), 4 * 300);
 }
 
 TEST_F(VisionBench, PairsMissingInTheCountDegradeOneResult) {

@@ -42,6 +42,7 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   [[nodiscard]] bool started() const { return pid_ > 0; }
+  [[nodiscard]] pid_t id() const { return pid_; }
   void send(int signal) const { ::kill(pid_, signal); }
   // Its exit code once it ends; -1 when a signal ended it.
   int wait() {

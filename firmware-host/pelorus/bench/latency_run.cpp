@@ -13,6 +13,7 @@
 #include "core/geometry/rectifier.h"
 #include "drivers/source_camera.h"
 #include "firmware-host/pelorus/bench/allocation_counter.h"
+#include "firmware-host/runtime/privileges.h"
 #include "firmware-host/runtime/process_setup.h"
 #include "services/capture.h"
 #include "services/publish_thread.h"
@@ -99,8 +100,9 @@ void tell_difference(const Snapshot& before, const Snapshot& after, LatencyRun& 
 class Chain {
  public:
   Chain(const std::shared_ptr<const PreloadedPairs>& pairs, const LatencyOptions& options, const Rectifier& rectifier,
-        bool realtime, Probe& probe)
-      : timing_(options.config.timing),
+        bool realtime, Probe& probe, PrivilegeLedger& privileges)
+      : privileges_(privileges),
+        timing_(options.config.timing),
         ring_(kRingSlots, FrameFormat{pairs->calibration.left.width, pairs->calibration.left.height, 2}),
         sync_(ring_),
         threads_{SideThread(prepared("klt", ThreadClass::fifo_middle, realtime, options.config.process.pin ? 1 : -1)),
@@ -129,14 +131,16 @@ class Chain {
   }
 
  private:
-  static std::function<void()> prepared(const char* name, ThreadClass wanted, bool realtime, int processor = -1) {
-    return [=] {
+  std::function<void()> prepared(const char* name, ThreadClass wanted, bool realtime, int processor = -1) {
+    return [=, this] {
       count_allocations_of_this_thread();
       const int pinned = realtime && processor >= 0 ? processor_to_bind(processor) : kAnyProcessor;
-      (void)set_thread(name, realtime ? wanted : ThreadClass::normal, pinned);
+      const std::string why = set_thread(name, realtime ? wanted : ThreadClass::normal, pinned);
+      privileges_.note_thread(name, pinned != kAnyProcessor, why);
     };
   }
 
+  PrivilegeLedger& privileges_;
   TimingConfig timing_;
   CaptureClock clock_;
   PublishDesk desk_;
@@ -171,17 +175,16 @@ Result<LatencyRun> run_latency(std::shared_ptr<const PreloadedPairs> pairs, cons
   if (!rectifier) return rectifier.error();
   LatencyRun run;
   const double held_mb = static_cast<double>(pairs->bytes()) / (1 << 20);
-  if (options.config.process.lock_memory) {
-    if (const std::string why = lock_memory(); !why.empty()) run.refused.push_back("memory lock: " + why);
-  }
+  PrivilegeLedger privileges;
+  if (options.config.process.lock_memory) privileges.note_memory_lock(lock_memory());
   bool realtime = options.config.process.realtime;
   if (realtime) {
     const std::string why = realtime_refusal();
-    if (!why.empty()) run.refused.push_back("real-time scheduling: " + why);
+    privileges.note_realtime(why);
     realtime = why.empty();
   }
   Probe probe(static_cast<std::size_t>(options.seconds * options.rate_hz * 1.2) + 100);
-  auto chain = std::make_unique<Chain>(pairs, options, rectifier.value(), realtime, probe);
+  auto chain = std::make_unique<Chain>(pairs, options, rectifier.value(), realtime, probe, privileges);
   run.interrupted = !let_run(*chain, options.warm_up_s, options, {});
   run.rss_start_mb = resident_mb("VmRSS:") - held_mb;
   const std::uint64_t superseded = chain->superseded();
@@ -199,6 +202,7 @@ Result<LatencyRun> run_latency(std::shared_ptr<const PreloadedPairs> pairs, cons
   run.rss_peak_mb = resident_mb("VmHWM:") - held_mb;
   chain.reset();
   run.steps = probe.take();
+  run.refused = privileges.refused();
   return run;
 }
 

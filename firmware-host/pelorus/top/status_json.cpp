@@ -83,7 +83,19 @@ void put_counters(const vis_health_t& m, JsonObject& json) {
       .integer("frozen_spells", m.frozen_spells)
       .integer("time_jumps", m.time_jumps)
       .integer("losses_of_track", m.losses_of_track)
-      .integer("lcm_errors", m.lcm_errors);
+      .integer("lcm_errors", m.lcm_errors)
+      .integer("pictures_incomplete", m.pictures_incomplete)
+      .integer("packets_missing", m.packets_missing)
+      .integer("packets_resent", m.packets_resent)
+      .integer("camera_reopens", m.camera_reopens)
+      .integer("can_sets_sent", m.can_sets_sent)
+      .integer("can_sets_dropped", m.can_sets_dropped)
+      .integer("can_sets_unheard", m.can_sets_unheard)
+      .integer("can_error_frames", m.can_error_frames)
+      .integer("can_bus_offs", m.can_bus_offs)
+      .integer("recorder_pairs_written", m.recorder_pairs_written)
+      .integer("recorder_pairs_dropped", m.recorder_pairs_dropped)
+      .integer("recorder_pairs_failed", m.recorder_pairs_failed);
 }
 
 std::string health_json(const BusView& view, ArrivalTime now) {
@@ -113,6 +125,7 @@ std::string health_json(const BusView& view, ArrivalTime now) {
       .number("disk_free_gb", m.disk_free_gb)
       .text("recorder", m.recorder_text)
       .text("can", m.can_text)
+      .text("privileges", m.privileges_text)
       .text("config_hash", m.config_hash)
       .text("calibration_hash", m.calibration_hash)
       .str();

@@ -181,6 +181,9 @@ void put_health(const BusView& view, PageWriter& page) {
   page.line("HOST", "CPU " + number(m.cpu_percent, 0, " %") + "  memory " + number(m.memory_mb, 0, " MB") + "  " +
                         number(m.temperature_degc, 0, " C") + "   pelorusd " + m.version + ", up " +
                         number(m.uptime_s, 0, " s"));
+  const bool refused = contains(m.privileges_text, "no real") || contains(m.privileges_text, "not locked") ||
+                       contains(m.privileges_text, "refused");
+  page.line("GRANTED", m.privileges_text, refused ? PageStyle::warning : PageStyle::plain);
   page.line("CAN", m.can_text, style_of_can(m.can_text));
   const bool disk_bad = contains(m.recorder_text, "full") || contains(m.recorder_text, "failed");
   page.line("DISK", number(m.disk_free_gb, 1, " GB free") + "   recorder " + m.recorder_text,

@@ -60,6 +60,8 @@ BusView small_view() {
   health.disk_free_gb = 78.5;
   health.can_text = "can0 active, 12 sets, 0 dropped, 0 error frames, 0 bus-offs";
   health.recorder_text = "off";
+  health.privileges_text = "real time, memory not locked: the limit is 64 kB, 2 threads pinned";
+  health.can_sets_dropped = 17;
   health.version = "0.1.0";
   view.health = {health, ago(0.5)};
   view.health_before = view.health;
@@ -93,6 +95,7 @@ TEST(StatusPage, TellsStateRatesDropsBusAndDisk) {
   EXPECT_TRUE(says(line_of(view, "HOST"), "  - C")) << line_of(view, "HOST");
   EXPECT_TRUE(says(line_of(view, "CAN"), "can0 active, 12 sets")) << line_of(view, "CAN");
   EXPECT_TRUE(says(line_of(view, "DISK"), "78.5 GB free")) << line_of(view, "DISK");
+  EXPECT_TRUE(says(line_of(view, "GRANTED"), "memory not locked: the limit is 64 kB")) << line_of(view, "GRANTED");
 }
 
 TEST(StatusPage, BodiesAreListedByRangeWithClosingSpeed) {
@@ -130,7 +133,7 @@ TEST(StatusPage, WhatIsOldIsToldToBeOldOnEveryLine) {
   }
   EXPECT_FALSE(says(line_of(view, "RATES"), "STALE"));
   view.health->at = ago(60);
-  for (const char* label : {"LATENCY", "RATES", "DROPS", "FAULTS", "PICTURE", "HOST", "CAN", "DISK"}) {
+  for (const char* label : {"LATENCY", "RATES", "DROPS", "FAULTS", "PICTURE", "HOST", "GRANTED", "CAN", "DISK"}) {
     EXPECT_EQ(line_of(view, label).substr(9, 12), "STALE 60.0 s") << label;
   }
   // The good color of a state goes with its freshness.
@@ -176,8 +179,8 @@ TEST(StatusPage, NoSizeMakesALineTooManyOrTooLong) {
       for (const PageLine& line : page) EXPECT_LE(plain_text(line).size(), static_cast<std::size_t>(columns));
     }
   }
-  // 24 rows have room for six bodies and the count of the others; 60 for all.
-  EXPECT_TRUE(says(page_text(view), "... and 26 farther away")) << page_text(view);
+  // 24 rows have room for five bodies and the count of the others; 60 for all.
+  EXPECT_TRUE(says(page_text(view), "... and 27 farther away")) << page_text(view);
   EXPECT_FALSE(says(page_text(view, {80, 60}), "farther"));
 }
 
@@ -242,6 +245,8 @@ TEST(StatusPage, JsonHoldsTheFactsOfRealMessages) {
   EXPECT_NEAR(json["tracks"]["bodies"][0]["range_m"].as<double>(), Eigen::Vector3d(0.3, -0.2, 4).norm(), 1e-6);
   EXPECT_TRUE(json["health"]["temperature_degc"].IsNull());
   EXPECT_EQ(json["health"]["dropped_superseded"].as<int>(), 12);
+  EXPECT_EQ(json["health"]["can_sets_dropped"].as<int>(), 17);
+  EXPECT_EQ(json["health"]["privileges"].as<std::string>(), view.health->message.privileges_text);
 }
 
 }  // namespace

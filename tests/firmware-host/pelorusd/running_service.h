@@ -21,6 +21,10 @@ namespace pelorus::test {
 inline constexpr int kDiveFrames = 25;
 inline constexpr double kDiveRate_hz = 10;
 
+// Patient, so that a loaded machine does not fail a test that is about something else.
+inline const std::string kPatient = "timing:\n  latency_ms: 400\n  deadline_tolerance_ms: 1000\n";
+inline const std::string kForever = kPatient + "# repeat\n";
+
 // The golden dive, a little longer, as an EuRoC folder; rendered once for the whole program.
 inline const std::filesystem::path& rendered_dive() {
   static const TemporaryFolder folder;
@@ -54,13 +58,14 @@ inline std::vector<std::filesystem::path> pictures(const std::filesystem::path& 
 
 class RunningService {
  public:
-  // `settings`: further lines of configuration. The listener is there before the service.
-  RunningService(const std::filesystem::path& dive, const std::string& settings, int bus)
-      : RunningService("source:\n  path: \"" + dive.string() + "\"\n" + repeat(settings), settings, bus) {}
+  // `settings`: further sections of the configuration, `lcm`: further lines of that one. The listener is there before
+  // the service.
+  RunningService(const std::filesystem::path& dive, const std::string& settings, int bus, const std::string& lcm = "")
+      : RunningService("source:\n  path: \"" + dive.string() + "\"\n" + repeat(settings), settings, bus, lcm) {}
   // `source`: the whole section.
-  RunningService(const std::string& source, const std::string& settings, int bus)
+  RunningService(const std::string& source, const std::string& settings, int bus, const std::string& lcm = "")
       : url_(loopback_url(bus)), odom(url_, "TEST.VIS_ODOM"), health(url_, "TEST.VIS_HEALTH") {
-    write_text(config(), source + "lcm:\n  url: \"" + url_ + "\"\n  vehicle: TEST\n" + settings);
+    write_text(config(), source + "lcm:\n  url: \"" + url_ + "\"\n  vehicle: TEST\n" + lcm + settings);
     process = std::make_unique<ChildProcess>(std::vector<std::string>{PELORUSD, "--config", config().string()},
                                              folder_.path() / "log");
   }

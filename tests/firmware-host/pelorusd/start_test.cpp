@@ -136,9 +136,11 @@ int without_route(const std::filesystem::path& dive) {
   if (!says("TRACKING")) return 2;  // vision goes on meanwhile
   if (!test::add_multicast_route()) return 3;
   test::Listener<vis_odom_t> odom(url, "TEST.VIS_ODOM");
-  if (!odom.wait_for(3, 10)) return 4;
   test::Listener<vis_health_t> health(url, "TEST.VIS_HEALTH");
+  if (!odom.wait_for(3, 10)) return 4;
   if (!health.wait_for(1, 10) || health.messages[0].lcm_errors == 0) return 5;
+  // Told as soon as it is open again, not with the next second.
+  if (health.messages[0].utime - odom.messages[0].publish_utime > 300'000) return 7;
   service.send(SIGTERM);
   return service.wait() == 0 ? 0 : 6;
 }

@@ -1,0 +1,36 @@
+#include "services/frame_timeout.h"
+
+#include <algorithm>
+#include <chrono>
+
+namespace pelorus {
+namespace {
+
+constexpr int kPeriods = 4;
+constexpr std::size_t kEnough = 3;  // intervals before the rate is believed
+constexpr Duration kUntilKnown = std::chrono::milliseconds(500);
+constexpr Duration kShortest = std::chrono::milliseconds(60);  // what an ordinary computer may keep a thread waiting
+constexpr Duration kLongest = std::chrono::seconds(10);
+
+}  // namespace
+
+FrameTimeout::FrameTimeout(double given_ms)
+    : given_(given_ms > 0), value_(given_ ? Duration(static_cast<std::int64_t>(given_ms * 1e6)) : kUntilKnown) {}
+
+void FrameTimeout::learn(Timestamp capture_time, std::uint64_t step) {
+  if (given_) return;
+  const Duration interval = (capture_time - last_) / static_cast<std::int64_t>(std::max<std::uint64_t>(step, 1));
+  last_ = capture_time;
+  if (!any_) {
+    any_ = true;
+    return;
+  }
+  latest_[learned_++ % kIntervals] = interval;
+  if (learned_ < kEnough) return;
+  std::array<Duration, kIntervals> sorted = latest_;
+  const std::size_t count = std::min(learned_, kIntervals);
+  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
+  value_ = std::clamp(kPeriods * sorted[count / 2], kShortest, kLongest);
+}
+
+}  // namespace pelorus

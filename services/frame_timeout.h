@@ -1,0 +1,34 @@
+#pragma once
+// FrameTimeout: how long to wait for a pair before there are no pictures. Given, or four periods of the rate at which
+// pairs really come, so that it is told within five of them at any rate. The period is the median of the latest
+// intervals: lost pairs, spells and jumps do not move it. Thread-bound; no allocation.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "core/base/time.h"
+
+namespace pelorus {
+
+class FrameTimeout {
+ public:
+  // `given_ms`: 0 = by the rate.
+  explicit FrameTimeout(double given_ms);
+
+  // A pair of this time came, `step` after the one before as the camera counts.
+  void learn(Timestamp capture_time, std::uint64_t step);
+  [[nodiscard]] Duration value() const { return value_; }
+
+ private:
+  static constexpr std::size_t kIntervals = 9;
+
+  bool given_;
+  Duration value_;
+  bool any_ = false;
+  Timestamp last_;
+  std::array<Duration, kIntervals> latest_{};
+  std::size_t learned_ = 0;
+};
+
+}  // namespace pelorus
