@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# The whole way in user-mode Linux: recorded pictures, pelorusd as a process, SocketCAN, the autopilot's receiver as another.
-# Every result has to be a set that the autopilot takes; then the service is stopped, and the autopilot has to notice.
+# The whole way in user-mode Linux: recorded pictures, pelorusd as a process, SocketCAN and LCM, the autopilot's receiver as
+# another process. Every result has to be a set that the autopilot takes, with the numbers that LCM has; then the service is
+# stopped, and the autopilot has to notice. A second run has its bus taken down: VIS_HEALTH has to say so at once.
 # usage: can_service.sh [FOLDER_WITH_PROGRAMS [FOLDER_FOR_RECORDINGS]]
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -8,6 +9,9 @@ root=$(cd "$here/../.." && pwd)
 bin=$(cd "${1:-$root/build/bin}" && pwd)
 out=${2:-$(mktemp -d)}
 [ $# -ge 2 ] || trap 'rm -rf "$out"' EXIT
+for tool in candump lcm-logger; do
+  command -v $tool >/dev/null || { echo "can_service.sh: $tool is missing (apt-get install can-utils liblcm-bin)" >&2; exit 77; }
+done
 
 "$bin/pelorus" synth "$root/tests/golden/small_dive.yaml" --out "$out/dive" >/dev/null
 cat >"$out/service.yaml" <<YAML
@@ -18,23 +22,47 @@ source:
 timing:
   latency_ms: 200
   deadline_tolerance_ms: 150
-lcm:
-  enabled: false
 can:
   enabled: true
   interface: vcan0
 YAML
 cat >"$out/guest.sh" <<GUEST
+ip route add 224.0.0.0/4 dev lo
+lcm-logger -q -f '$out/service.lcm' &
+logger=\$!
 candump -L vcan0 >'$out/can.log' &
 candump=\$!
-'$bin/example_autopilot' vcan0 --seconds 20 >'$out/autopilot.txt' &
+'$bin/pelorus' can dump vcan0 --sets --json >'$out/sets.json' 2>'$out/sets.txt' &
+dump=\$!
+'$bin/example_autopilot' vcan0 >'$out/autopilot.txt' &
 autopilot=\$!
-timeout -s TERM 15 '$bin/pelorusd' --config '$out/service.yaml' >'$out/service.log' 2>&1 || true
-wait \$autopilot
-kill -TERM \$candump
+sleep 1
+'$bin/pelorusd' --config '$out/service.yaml' >'$out/service.log' 2>&1 &
+service=\$!
+sent() { cat /sys/class/net/vcan0/statistics/tx_packets; }
+until [ "\$(sent)" -ge 420 ] && kill -0 \$service; do sleep 0.5; done  # 60 sets of seven frames
+kill -TERM \$service
+wait \$service
+sleep 2  # the autopilot has to notice
+kill -INT \$logger
+kill -TERM \$autopilot \$candump \$dump
+wait \$logger \$autopilot \$candump \$dump
+lcm-logger -q -f '$out/down.lcm' &
+logger=\$!
+sleep 1
+'$bin/pelorusd' --config '$out/service.yaml' >'$out/down.log' 2>&1 &
+service=\$!
+before=\$(sent)
+until [ "\$(sent)" -ge \$((before + 70)) ] && kill -0 \$service; do sleep 0.1; done
+date +%s%N >'$out/down_ns'
+ip link set vcan0 down
+sleep 2
+kill -TERM \$service
+wait \$service
+kill -INT \$logger
 wait
 GUEST
-"$here/uml.sh" -t 90 -o "$out" -- bash "$out/guest.sh"
+"$here/uml.sh" -t 240 -o "$out" -- bash "$out/guest.sh"
 
 cat "$out/service.log"
 head -n 5 "$out/autopilot.txt"
@@ -49,4 +77,5 @@ case "$counts" in
 esac
 [ "$usable" -ge $((results / 2)) ] || { echo "FAIL: only $usable estimates were usable"; exit 1; }
 [ "$(tail -n 2 "$out/autopilot.txt" | head -n 1)" = "link TIMEOUT" ] || { echo "FAIL: silence not noticed"; exit 1; }
+python3 "$here/can_service_check.py" "$out" "$results" 5
 echo "ok: $results results, $results sets, $usable usable, silence noticed"

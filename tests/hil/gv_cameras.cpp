@@ -1,8 +1,8 @@
 // Recorded pairs as two GigE Vision cameras on this machine: Aravis' fake camera, the real protocols over UDP. Both
 // fire at the multiples of the period on the wall clock and show the pair of that moment, forth and back through the
 // recording, so that its motion never jumps. Faults are injected by lines on standard input:
-//   off SIDE | on SIDE | loss SIDE SHARE | freeze SIDE 0|1 | late SIDE PAIRS | clock SIDE SECONDS      SIDE: left,
-//   right
+//   off SIDE | on SIDE | loss SIDE SHARE | freeze SIDE 0|1 | late SIDE PAIRS | clock SIDE SECONDS | swap SIDE 0|1
+// SIDE: left or right; swap: that camera shows the pictures of the other.
 //
 // usage: gv_cameras DATASET LEFT_ADDRESS RIGHT_ADDRESS RATE_HZ [SHOWN_CSV]      ends at end of input
 // SHOWN_CSV: at the end, every picture that either camera took: side, time on the wall clock, index in the recording.
@@ -51,8 +51,13 @@ constexpr std::size_t kMostShown = 1'000'000;  // hours
 // One of the two cameras and what is wrong with it.
 class Side {
  public:
-  Side(const std::vector<Image>& frames, std::string address, std::string serial, double rate_hz)
-      : frames_(frames), address_(std::move(address)), serial_(std::move(serial)), period_ns_(1e9 / rate_hz) {
+  Side(const std::vector<Image>& frames, const std::vector<Image>& others, std::string address, std::string serial,
+       double rate_hz)
+      : frames_(frames),
+        others_(others),
+        address_(std::move(address)),
+        serial_(std::move(serial)),
+        period_ns_(1e9 / rate_hz) {
     log_.reserve(kMostShown);
   }
 
@@ -77,6 +82,7 @@ class Side {
   }
   void freeze(bool frozen) { frozen_ = frozen; }
   void delay(int pairs) { late_ = pairs; }
+  void swap(bool swapped) { swapped_ = swapped; }
   // Of a camera that is off.
   [[nodiscard]] const std::vector<Shown>& log() const { return log_; }
   [[nodiscard]] std::uint64_t painted() const { return painted_before_ + (camera_ ? camera_->painted() : 0); }
@@ -87,7 +93,7 @@ class Side {
     const auto tick = static_cast<std::int64_t>(std::floor(static_cast<double>(time_ns) / period_ns_ + 0.25));
     if (!frozen_) shown_ = index_at(tick - late_);
     if (log_.size() < kMostShown) log_.push_back({std::llround(static_cast<double>(tick) * period_ns_), shown_});
-    const Image& frame = frames_[shown_];
+    const Image& frame = (swapped_ ? others_ : frames_)[shown_];
     for (int v = 0; v < height && v < frame.height(); ++v)
       std::copy_n(frame.row(v), std::min(width, frame.width()), pixels + static_cast<std::ptrdiff_t>(v) * width);
   }
@@ -100,10 +106,12 @@ class Side {
   }
 
   const std::vector<Image>& frames_;
+  const std::vector<Image>& others_;  // of the other camera
   std::string address_;
   std::string serial_;
   double period_ns_;
   std::atomic<bool> frozen_{false};
+  std::atomic<bool> swapped_{false};
   std::atomic<int> late_{0};
   std::size_t shown_ = 0;   // camera's thread
   std::vector<Shown> log_;  // camera's thread
@@ -128,6 +136,7 @@ void obey(const std::string& line, std::array<Side*, 2> sides) {
   if (verb == "on" && !side.on()) std::fprintf(stderr, "gv_cameras: %s does not come up\n", name.c_str());
   if (verb == "loss") side.lose(value);
   if (verb == "freeze") side.freeze(value != 0);
+  if (verb == "swap") side.swap(value != 0);
   if (verb == "late") side.delay(static_cast<int>(value));
   if (verb == "clock") side.set_clock(value);
 }
@@ -152,8 +161,9 @@ int run(int count, char** arguments) {
   }
   const double rate_hz = std::atof(arguments[4]);
   if (rate_hz <= 0) return 2;
-  Side left(film.value().frames[0], arguments[2], "left", rate_hz);
-  Side right(film.value().frames[1], arguments[3], "right", rate_hz);
+  const std::vector<Image>(&frames)[2] = film.value().frames;
+  Side left(frames[0], frames[1], arguments[2], "left", rate_hz);
+  Side right(frames[1], frames[0], arguments[3], "right", rate_hz);
   if (!left.on() || !right.on()) {
     std::fprintf(stderr, "gv_cameras: no such address on this machine\n");
     return 7;

@@ -3,8 +3,10 @@
 
 usage: gv_check.py drops LOG SHOWN RATE_HZ            every exposure is a result, or a counted loss with its cause
        gv_check.py played LOG SHOWN RATE_HZ DATASET OUT   the pairs of the results as an EuRoC folder, for pelorus replay
-       gv_check.py poses LOG RESULTS [TOLERANCE_M TOLERANCE_DEG]   results against those of `pelorus replay` of the same pairs
-       gv_check.py faults LOG SHOWN RATE_HZ CAMERAS_TXT [FRAMES]   each fault is told as a state within FRAMES (5)
+       gv_check.py poses LOG RESULTS [TOLERANCE_M TOLERANCE_DEG]   results and bodies against those of `pelorus replay` of the
+                                                                   same pairs
+       gv_check.py faults LOG SHOWN RATE_HZ CAMERAS_TXT [FRAMES]   each fault is told as a state within FRAMES (5), counted
+                                                                   as injected, and over when it is over
 Exit code 1 when it is not so.
 """
 
@@ -13,35 +15,13 @@ import math
 import os
 import sys
 
-from lcm_log import events, health, odom
+from gv_faults import check_faults
+from gv_record import NO_PICTURES, Shown, read_log
+from lcm_log import events, tracks
 
 CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped".split()
-NO_PICTURES = "no pictures"
+MOST_ONE_SIDED = 0.02  # of the bodies: found or given up a pair earlier
 HEALTH_LAG_US = 400_000  # a loss is in the counters so long after its exposure
-
-
-def read_log(path):
-    results, reports = [], []
-    for received_us, channel, data in events(path):
-        if channel.endswith(".VIS_ODOM"):
-            results.append({**odom(data), "received": received_us})
-        elif channel.endswith(".VIS_HEALTH"):
-            reports.append(health(data))
-    return results, reports
-
-
-class Shown:
-    """Exposures by number: multiples of the period on the wall clock."""
-
-    def __init__(self, path, rate_hz):
-        self.period_us = 1e6 / float(rate_hz)
-        self.frames = {"left": {}, "right": {}}
-        with open(path, encoding="ascii") as rows:
-            for side, time_ns, frame in csv.reader(rows):
-                self.frames[side][self.tick(int(time_ns) / 1000)] = int(frame)
-
-    def tick(self, time_us):
-        return round(time_us / self.period_us)
 
 
 def check_drops(log, shown_path, rate_hz):
@@ -108,6 +88,32 @@ def in_body(position, quaternion):
     return (z, x, y), (w, qz, qx, qy)
 
 
+def turned_deg(a, b):
+    return math.degrees(2 * math.acos(min(1.0, abs(sum(x * y for x, y in zip(a, b))))))
+
+
+class Differences:
+    """Between the live and the stepped estimate of the same exposure."""
+
+    def __init__(self, name):
+        self.name, self.apart_m, self.turned_deg, self.sigmas = name, [], [], []
+
+    def add(self, position, quaternion, live):
+        self.apart_m.append(math.dist(position, live["position"]))
+        self.turned_deg.append(turned_deg(quaternion, live["quaternion"]))
+        self.sigmas.append(self.apart_m[-1] / math.sqrt(max(sum(live["variances"][:3]), 1e-18)))
+
+    def tell(self):
+        for what, values in (("apart [mm]", [1000 * d for d in self.apart_m]), ("turned [deg]", self.turned_deg),
+                             ("apart in declared deviations", self.sigmas)):
+            values = sorted(values)
+            print(f"{self.name} {what}: p50 {values[len(values) // 2]:.4f} p99 {values[int(0.99 * len(values))]:.4f} "
+                  f"max {values[-1]:.4f}")
+
+    def beyond(self, tolerance_m, tolerance_deg):
+        return max(self.apart_m) > float(tolerance_m) or max(self.turned_deg) > float(tolerance_deg)
+
+
 def check_poses(log, results_folder, tolerance_m=None, tolerance_deg=None):
     live = [r for r in read_log(log)[0] if r["reason"] != NO_PICTURES]
     with open(os.path.join(results_folder, "frames.csv"), encoding="ascii") as rows:
@@ -117,7 +123,7 @@ def check_poses(log, results_folder, tolerance_m=None, tolerance_deg=None):
     poses = {int(line[0].replace(".", "")): [float(value) for value in line[1:]] for line in lines}
     replayed = {int(frame["timestamp_ns"]): frame for frame in frames}
     renumbered = int(frames[0]["seq"]) - live[0]["seq"]
-    distances, angles, sigmas, unequal, numbers = [], [], [], 0, 0
+    differences, unequal, numbers = Differences("vehicle"), 0, 0
     for result in live:
         frame = replayed.get(result["utime"] * 1000)
         if frame is None:
@@ -129,68 +135,58 @@ def check_poses(log, results_folder, tolerance_m=None, tolerance_deg=None):
         elif result["valid"]:
             x, y, z, qx, qy, qz, qw = poses[int(frame["timestamp_ns"])]
             position, quaternion = in_body((x, y, z), (qw, qx, qy, qz))
-            distances.append(math.dist(position, result["position"]))
-            dot = abs(sum(a * b for a, b in zip(quaternion, result["quaternion"])))
-            angles.append(math.degrees(2 * math.acos(min(1.0, dot))))
-            sigmas.append(distances[-1] / math.sqrt(max(sum(result["variances"][:3]), 1e-18)))
-    equal = sum(distance < 1e-6 for distance in distances)
-    print(f"poses of the same exposure compared: {len(distances)} of {len(live)}, of the same number {numbers}; one valid, the other not: {unequal}; "
-          f"equal to 1e-6 m: {equal}")
-    if not distances:
+            differences.add(position, quaternion, result)
+    equal = sum(distance < 1e-6 for distance in differences.apart_m)
+    print(f"poses of the same exposure compared: {len(differences.apart_m)} of {len(live)}, of the same number {numbers}; "
+          f"one valid, the other not: {unequal}; equal to 1e-6 m: {equal}")
+    if not differences.apart_m:
         return True
-    for name, values in (("apart [mm]", [1000 * d for d in distances]), ("turned [deg]", angles),
-                         ("apart in declared deviations", sigmas)):
-        values.sort()
-        print(f"{name}: p50 {values[len(values) // 2]:.4f} p99 {values[int(0.99 * len(values))]:.4f} max {values[-1]:.4f}")
+    differences.tell()
+    bodies_bad = check_bodies(log, results_folder, tolerance_m, tolerance_deg)
     if tolerance_m is None:
         return False
-    return unequal > 0 or distances[-1] > float(tolerance_m) or angles[-1] > float(tolerance_deg)
+    return unequal > 0 or differences.beyond(tolerance_m, tolerance_deg) or bodies_bad
 
 
-FAULTS = {"off": ("CAMERA_FAULT", "no pictures"), "freeze": ("CAMERA_FAULT", "frozen")}
+# The body's own axes stay: T_body_cam * T_cam0_obj turns from one side only.
+LOOKING_AHEAD = (0.5, 0.5, 0.5, 0.5)  # (w, x, y, z) of R_body_cam: image right is starboard, image down is down
 
 
-def first_affected(fault, at_us, shown):
-    """The first exposure that the fault spoils: not taken, or the same picture again."""
-    verb, side = fault
-    frames = shown.frames[side]
-    after = sorted(tick for tick in frames if tick * shown.period_us > at_us - shown.period_us)
-    if verb == "freeze":
-        return next((tick for tick in after if tick - 1 in frames and frames[tick] == frames[tick - 1]), None)
-    return max(tick for tick in frames if tick * shown.period_us <= at_us) + 1  # of this side
+def product(a, b):
+    w, x, y, z = a
+    v, p, q, r = b
+    return (w * v - x * p - y * q - z * r, w * p + x * v + y * r - z * q, w * q - x * r + y * v + z * p,
+            w * r + x * q - y * p + z * v)
 
 
-def check_faults(log, shown_path, rate_hz, cameras, within=5):
-    shown = Shown(shown_path, rate_hz)
-    results = read_log(log)[0]
-    bad, checked = False, 0
-    with open(cameras, encoding="utf-8") as lines:
-        obeyed = [line.split() for line in lines if line.startswith("obeyed")]
-    for _, time_ns, verb, side, *values in obeyed:
-        if verb not in FAULTS or values == ["0"]:
+def check_bodies(log, results_folder, tolerance_m, tolerance_deg):
+    """Bodies by their number: the same in both, and in the same place."""
+    with open(os.path.join(results_folder, "objects.csv"), encoding="ascii") as rows:
+        stepped = {}
+        for row in csv.DictReader(rows):
+            stepped.setdefault(int(row["timestamp_ns"]) // 1000, {})[int(row["object_id"])] = row
+    differences, one_sided, total = Differences("bodies"), 0, 0
+    for _, channel, data in events(log):
+        if not channel.endswith(".VIS_TRACKS"):
             continue
-        checked += 1
-        at_us = int(time_ns) / 1000
-        spoiled = first_affected((verb, side), at_us, shown)
-        if spoiled is None:
-            print(f"{verb} {side}: spoiled no exposure")
-            bad = True
-            continue
-        spoiled_us = spoiled * shown.period_us
-        state, reason = FAULTS[verb]
-        told = next((r for r in results if r["utime"] >= spoiled_us and r["state"] == state and reason in r["reason"]), None)
-        doubted = next((r for r in results if r["utime"] >= spoiled_us and r["state"] != "TRACKING"), None)
-        frames = (told["utime"] - spoiled_us) / shown.period_us if told else math.inf
-        out_ms = (told["publish_utime"] - spoiled_us) / 1000 if told else math.inf
-        note = f"; first not TRACKING: {doubted['state']} ({doubted['reason']}), " \
-               f"{(doubted['utime'] - spoiled_us) / shown.period_us:.1f} frames" if doubted else ""
-        good = frames <= float(within)
-        bad = bad or not good
-        print(f"{'ok' if good else 'FAIL'}: {verb} {side}: {state} ({reason}) {frames:.1f} frames after the first "
-              f"exposure it spoiled, published after {out_ms:.0f} ms{note}")
-    if not checked:
-        print("no fault was injected")
-    return bad or not checked
+        live = tracks(data)
+        other = stepped.get(live["utime"], {})
+        total += len(live["bodies"].keys() | other.keys())
+        one_sided += len(live["bodies"].keys() ^ other.keys())
+        for ident in live["bodies"].keys() & other.keys():
+            row = {name: float(value) for name, value in other[ident].items() if name[:2] in ("p_", "q_")}
+            position, _ = in_body((row["p_x"], row["p_y"], row["p_z"]), (1, 0, 0, 0))
+            quaternion = product(LOOKING_AHEAD, (row["q_w"], row["q_x"], row["q_y"], row["q_z"]))
+            differences.add(position, quaternion, live["bodies"][ident])
+    print(f"bodies of the same exposure and number compared: {len(differences.apart_m)}; in one of the two only: "
+          f"{one_sided} of {total}")
+    if not differences.apart_m:
+        print("no body in both")
+        return True
+    differences.tell()
+    if tolerance_m is None:
+        return False
+    return one_sided > MOST_ONE_SIDED * total or differences.beyond(tolerance_m, tolerance_deg)
 
 
 CHECKS = {"drops": check_drops, "played": write_played, "poses": check_poses, "faults": check_faults}

@@ -47,7 +47,8 @@ def main():
     for name, values in (("capture to LCM listener", [(r[0] - r[1]) / 1000 for r in settled]),
                          ("capture to publication", [(r[2] - r[1]) / 1000 for r in settled])):
         print(f"{name} [ms]: " + " ".join(f"{k} {v:.2f}" for k, v in percentiles(values).items()))
-    print("counters:", " ".join(f"{name}={value:g}" for name, value in counters.items() if value and name != "utime"))
+    print("counters:", " ".join(f"{name}={value:g}" for name, value in counters.items() if value and isinstance(value, (int, float)) and name != "utime"))
+    print("granted:", counters.get("privileges_text", "no VIS_HEALTH"))
     return 1 if lost > arguments.max_lost * span else 0
 
 

@@ -1,0 +1,103 @@
+#!/usr/bin/env python3
+"""CAN against LCM of the same pelorusd (recordings of can_service.sh): every result is one set with the same numbers; how
+long after the exposure each is there; and a bus that goes down is in VIS_HEALTH within five pictures.
+
+usage: can_service_check.py FOLDER RESULTS RATE_HZ
+Exit code 1 when it is not so.
+"""
+
+import glob
+import json
+import math
+import os
+import sys
+
+from lcm_check import percentiles
+from lcm_log import events, health, odom
+
+# Half a step of the contract (docs/can.md).
+HALF_STEP = {"velocity_mps": 5e-4, "position_m": 5e-3, "angle_rad": 5e-5}
+MOST_APART_US = 150_000  # between the release of a result and the last frame of its set
+
+
+def read_log(folder, name):
+    (path,) = glob.glob(os.path.join(folder, name + ".lcm*"))
+    results, reports = [], []
+    for received_us, channel, data in events(path):
+        if channel.endswith(".VIS_ODOM"):
+            results.append({**odom(data), "received": received_us})
+        elif channel.endswith(".VIS_HEALTH"):
+            reports.append(health(data))
+    return results, reports
+
+
+def euler(w, x, y, z):
+    """Roll, pitch, yaw of a quaternion, order yaw pitch roll."""
+    return (math.atan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)), math.asin(2 * (w * y - z * x)),
+            math.atan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z)))
+
+
+def set_of(result, sets):
+    """The set that left with this result: the first whose last frame came after its release."""
+    return next((s for s in sets if 0 <= s["time_s"] * 1e6 - result["publish_utime"] + 1000 <= MOST_APART_US), None)
+
+
+def wrong_numbers(result, one):
+    """Names of what CAN and LCM do not agree on; and how many numbers were compared."""
+    pairs = []
+    if result["velocity"] is not None:
+        pairs += [("velocity_mps", a, b) for a, b in zip(one["velocity_mps"], result["velocity"])]
+    if result["valid"]:
+        pairs += [("position_m", a, b) for a, b in zip(one["position_m"], result["position"])]
+        pairs += [("angle_rad", one[name + "_rad"], b)
+                  for name, b in zip(("roll", "pitch", "yaw"), euler(*result["quaternion"]))]
+    compared = [(name, a, b) for name, a, b in pairs if a is not None]  # slow frames come with every few sets
+    wrong = [name for name, a, b in compared if abs(a - b) > HALF_STEP[name] + 1e-6 * abs(b)]
+    wrong += [name for name, same in (("state", one["state"] == result["state"]), ("resets", one["resets"] == result["resets"]))
+              if not same]
+    return wrong, len(compared)
+
+
+def check_sets(folder, expected):
+    results, reports = read_log(folder, "service")
+    with open(os.path.join(folder, "sets.json"), encoding="utf-8") as lines:
+        sets = [line for line in map(json.loads, filter(lambda l: l.startswith("{"), lines)) if "state" in line]
+    bad = len(results) != expected or len(sets) != expected or reports[-1]["can_sets_sent"] != len(sets)
+    print(f"results on LCM {len(results)}, sets on CAN {len(sets)}, VIS_HEALTH counts {reports[-1]['can_sets_sent']}")
+    compared, to_can, to_lcm, wrong = 0, [], [], []
+    for result in results:
+        one = set_of(result, sets)
+        if one is None:
+            print(f"result {result['seq']} has no set")
+            bad = True
+            continue
+        differing, count = wrong_numbers(result, one)
+        wrong += differing
+        compared += count
+        to_lcm.append((result["received"] - result["utime"]) / 1000)
+        to_can.append(one["time_s"] * 1e3 - result["utime"] / 1000)
+    print(f"numbers of CAN compared with LCM: {compared}, beyond half a step: {len(wrong)} {sorted(set(wrong))}")
+    for name, values in (("capture to LCM", to_lcm), ("capture to CAN", to_can)):
+        print(f"{name} [ms]: " + " ".join(f"{k} {v:.2f}" for k, v in percentiles(values).items()))
+    return bad or bool(wrong) or compared < 6 * expected
+
+
+def check_down(folder, rate_hz):
+    _, reports = read_log(folder, "down")
+    with open(os.path.join(folder, "down_ns"), encoding="ascii") as file:
+        down_us = int(file.read()) / 1000
+    told = next((r for r in reports if r["utime"] > down_us and " down" in r["can_text"]), None)
+    if told is None:
+        print(f"FAIL: the bus went down and VIS_HEALTH never said so: {reports[-1]['can_text']}")
+        return True
+    late_ms = (told["utime"] - down_us) / 1000
+    print(f"bus down told after {late_ms:.0f} ms: {told['can_text']}")
+    # Sooner than the next second's report would have had to come.
+    return late_ms > min(5e3 / rate_hz, 500)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 4:
+        sys.exit(__doc__)
+    FAILURES = [check_sets(sys.argv[1], int(sys.argv[2])), check_down(sys.argv[1], float(sys.argv[3]))]
+    sys.exit(1 if any(FAILURES) else 0)
