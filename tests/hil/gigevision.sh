@@ -39,7 +39,7 @@ fi
 pelorusd=${PELORUSD:-$root/build/bin/pelorusd}
 # How far a pose may be from the stepped one. Live, the background window's answer enters when it is ready, stepped always
 # with the next pair: where a step was late the two go different ways by a share of their own uncertainty.
-tolerance_m=${PELORUS_HIL_TOLERANCE_M:-0.01} tolerance_deg=${PELORUS_HIL_TOLERANCE_DEG:-0.1}
+tolerance_m=${PELORUS_HIL_TOLERANCE_M:-0.004} tolerance_deg=${PELORUS_HIL_TOLERANCE_DEG:-0.05}
 for part in "$pelorusd" "$build/tests/gv_cameras" "$(command -v lcm-logger || echo lcm-logger)"; do
   [ -x "$part" ] || { echo "gigevision.sh: $part is not there" >&2; exit 77; }
 done

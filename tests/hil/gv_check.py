@@ -21,6 +21,7 @@ from lcm_log import events, tracks
 
 CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped".split()
 MOST_ONE_SIDED = 0.02  # of the bodies: found or given up a pair earlier
+TURNED_MORE = 2  # a body has few points and is small: its orientation is worth less than the vehicle's
 HEALTH_LAG_US = 400_000  # a loss is in the counters so long after its exposure
 
 
@@ -186,7 +187,7 @@ def check_bodies(log, results_folder, tolerance_m, tolerance_deg):
     differences.tell()
     if tolerance_m is None:
         return False
-    return one_sided > MOST_ONE_SIDED * total or differences.beyond(tolerance_m, tolerance_deg)
+    return one_sided > MOST_ONE_SIDED * total or differences.beyond(tolerance_m, TURNED_MORE * float(tolerance_deg))
 
 
 CHECKS = {"drops": check_drops, "played": write_played, "poses": check_poses, "faults": check_faults}
