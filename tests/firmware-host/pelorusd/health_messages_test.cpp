@@ -45,7 +45,7 @@ struct KernelFacts {
 TEST_F(HealthMessages, PrivilegesAreThoseThatTheKernelShows) {
   RunningService service(test::rendered_dive(), test::kForever, 14);
   ASSERT_TRUE(service.wait_for_state("TRACKING")) << service.log();
-  ASSERT_TRUE(service.health.wait_for(2)) << service.log();
+  ASSERT_TRUE(service.health.wait_for(2, 20)) << service.log();
   const KernelFacts facts(service.process->id());
   const std::string text = service.health.messages.back().privileges_text;
   EXPECT_EQ(text.starts_with("real time, "), facts.realtime) << text;
