@@ -22,7 +22,7 @@ struct FrontEndConfig {
   // All maxima, or nearly: the strongest alone would leave a dim sea floor beside a bright hull without points.
   SurfConfig surf{.max_points = 6000};
   SurfMatchConfig surf_match;
-  int max_points = 800;
+  int max_points = 750;
   int cell_columns = 16;
   int cell_rows = 12;
   double min_distance_px = 12.0;        // between points of the background
@@ -30,7 +30,7 @@ struct FrontEndConfig {
   int max_points_per_object = 70;
   double forward_backward_px = 0.4;  // of tracks that no reference image confirms
   double min_disparity_px = 0.7;
-  double reference_agreement_px = 1.0;   // place by reference against place by previous frame
+  double reference_agreement_px = 1.0;  // place by reference against place by previous frame
   double reference_min_ncc = 0.85;
   double slope_radius_px = 70.0;  // neighbours that tell the slope of the surface around a point
   double max_slope = 0.15;        // disparity change per pixel above which an edge lies between two points

@@ -139,7 +139,14 @@ void Pipeline::State::collect_fixed() {
   }
 }
 
-// The static motion is estimated anew after each filter (6.1 step 6); suspects are then tested against it.
+// Of the fixed points, from the motion known so far, which stays when they do not tell.
+void Pipeline::State::fit_ego_motion() {
+  const MotionFit fit = two_frame_ba.run(rig, pairs, fixed, ego.H_curr_prev);
+  if (fit.outcome != StageOutcome::degenerate) ego = fit;
+}
+
+// The static motion is estimated anew after each filter (6.1 step 6); suspects are then tested against it, and those
+// that fit have their say in it again: among scattered false motion (snow, dim water) every third point is suspect.
 void Pipeline::State::filter_static_and_moving() {
   if (!ego_found()) return;
   net.build(pairs, roles);
@@ -148,8 +155,7 @@ void Pipeline::State::filter_static_and_moving() {
     ego_outcome = StageOutcome::too_few_points;
     return;
   }
-  const MotionFit refined = two_frame_ba.run(rig, pairs, fixed, ego.H_curr_prev);
-  if (refined.outcome != StageOutcome::degenerate) ego = refined;
+  fit_ego_motion();
   if (config.steps.ray_filter) {
     (void)ray_filter(rig, net, pairs, chi2_static, config.ray_filter, roles);
   }
@@ -159,6 +165,7 @@ void Pipeline::State::filter_static_and_moving() {
     roles[i] = fits && pairs[i].previous_body <= kWorldBody ? PointRole::fixed : PointRole::outlier;
   }
   collect_fixed();
+  fit_ego_motion();
   static_motions.T_curr_past[0] = ego.H_curr_prev;
   learn_sigma(config.ego_motion.sigma_learning_rate);
 }

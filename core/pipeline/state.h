@@ -18,10 +18,11 @@ struct Pipeline::State {
   void find_world();                            // 5.2, 6.1 step 4
   void split_static_from_moving();              // 5.2.1, step 5
   void filter_static_and_moving();              // 5.2.2, 5.2.3, step 6
-  void refine_ego_motion();                     // by what the window found
-  void follow_bodies();                         // 6.2 step 2
-  void find_new_bodies();                       // 6.1 step 7, 5.2.4
-  void settle_bodies();                         // section 4: trajectories; registry
+  void fit_ego_motion();
+  void refine_ego_motion();  // by what the window found
+  void follow_bodies();      // 6.2 step 2
+  void find_new_bodies();    // 6.1 step 7, 5.2.4
+  void settle_bodies();      // section 4: trajectories; registry
   void start_points();
   void give_to_window();
   void lose_track();

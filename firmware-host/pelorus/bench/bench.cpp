@@ -98,7 +98,7 @@ Verb add_bench(CLI::App& app) {
   latency->add_option("--frames", arguments->frames, "Pairs held in memory and shown there and back again")
       ->check(CLI::Range(3, 10000))
       ->capture_default_str();
-  latency->add_option("--points", arguments->points, "Points of the front end (default: as configured, 800)")
+  latency->add_option("--points", arguments->points, "Points of the front end (default: as configured, 750)")
       ->check(CLI::Range(50, 2000));
   latency->add_option("--latency-ms", arguments->latency_ms, "Declared latency (default: as configured)")
       ->check(above_zero());
