@@ -15,6 +15,8 @@
 
 namespace pelorus {
 
+inline constexpr float kAnywhere_px = std::numeric_limits<float>::infinity();  // partners may lie
+
 struct SurfMatchConfig {
   float max_ratio = 0.8F;     // of the best distance to the second best
   float max_distance = 0.7F;  // of unit descriptors

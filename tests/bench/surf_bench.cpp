@@ -93,7 +93,7 @@ void match(benchmark::State& state) {
   std::vector<SurfDescriptor> descriptors(points.size());
   surf.describe(points, descriptors);
   SurfMatcher matcher({});
-  for (auto _ : state) benchmark::DoNotOptimize(matcher.match(points, descriptors, points, descriptors, {}));
+  for (auto _ : state) benchmark::DoNotOptimize(matcher.match(points, descriptors, points, descriptors, kAnywhere_px));
 }
 
 dlib::array2d<unsigned char> dlib_copy(const cv::Mat& image) {

@@ -123,7 +123,7 @@ Score score(const Features& a, const Features& b, const Eigen::Matrix3d& H, cons
   }
   const double common = std::max(1.0, std::min(common_a, common_b));
   SurfMatcher matcher({});
-  const auto matches = matcher.match(a.points, a.descriptors, b.points, b.descriptors, {});
+  const auto matches = matcher.match(a.points, a.descriptors, b.points, b.descriptors, kAnywhere_px);
   std::vector<double> errors;
   for (const SurfMatch& m : matches) {
     const SurfPoint& p = a.points[static_cast<std::size_t>(m.first)];

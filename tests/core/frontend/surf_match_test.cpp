@@ -42,7 +42,7 @@ SurfDescriptor near(const SurfDescriptor& d, float noise, std::mt19937& rng) {
   return unit(n);
 }
 
-auto matches_of(SurfMatcher& matcher, const Set& a, const Set& b, float radius_px = 1e6F) {
+auto matches_of(SurfMatcher& matcher, const Set& a, const Set& b, float radius_px = kAnywhere_px) {
   const auto found = matcher.match(a.points, a.descriptors, b.points, b.descriptors, radius_px);
   return std::vector<SurfMatch>(found.begin(), found.end());
 }

@@ -95,7 +95,7 @@ Agreement compare(const Similarity& warp, bool upright) {
   }
   SurfMatcher matcher({});
   int right = 0;
-  for (const SurfMatch& m : matcher.match(a.points, a.descriptors, b.points, b.descriptors, {})) {
+  for (const SurfMatch& m : matcher.match(a.points, a.descriptors, b.points, b.descriptors, kAnywhere_px)) {
     const SurfPoint& p = a.points[static_cast<std::size_t>(m.first)];
     const SurfPoint& q = b.points[static_cast<std::size_t>(m.second)];
     ++result.matches;
