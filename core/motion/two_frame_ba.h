@@ -43,7 +43,7 @@ class TwoFrameBa {
 
   TwoFrameBaConfig config_;
   std::vector<PointIndex> used_;
-  std::vector<PointMatch> matches_;          // of the alignment
+  std::vector<PointMatch> matches_;        // of the alignment
   std::vector<Eigen::Vector3d> z_hat_px_;  // corrected prev measurement of each used point: its structure
 };
 
