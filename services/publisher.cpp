@@ -10,6 +10,8 @@ const char* to_text(StateReason reason) {
       return "starting";
     case StateReason::few_points:
       return "few points";
+    case StateReason::ambiguous_world:
+      return "which group is the world is unclear";
     case StateReason::deadline_missed:
       return "deadline missed";
     case StateReason::pairs_dropped:

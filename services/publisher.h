@@ -15,6 +15,7 @@ enum class StateReason : std::uint8_t {
   none,
   starting,          // INIT: the first pairs
   few_points,        // DEGRADED or LOST, as the pipeline judged
+  ambiguous_world,   // DEGRADED: another group of points might be the world
   deadline_missed,   // DEGRADED: released later than declared
   pairs_dropped,     // DEGRADED: captured pairs were not used since the last result
   time_jump,         // DEGRADED: the camera's time stamps left the clock

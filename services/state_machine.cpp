@@ -44,7 +44,7 @@ void settle_state(const Circumstances& c, Publication& publication) {
     case VisionState::lost:
       return settle_invalid(publication, VisionState::lost, StateReason::few_points);
     case VisionState::degraded:
-      publication.reason = StateReason::few_points;
+      publication.reason = result.world_ambiguous ? StateReason::ambiguous_world : StateReason::few_points;
       return;
     default:
       publication.reason = minor_reason(c);

@@ -118,8 +118,9 @@ struct FrameResult {
   Matrix6d cov_T_world_cam = Matrix6d::Zero();
   Rigid3 T_curr_prev = Rigid3::Identity();  // H_static of this step
   Matrix6d cov_T_curr_prev = Matrix6d::Zero();
-  double world_confidence = 0;  // 0..1, margin of the static group over the runner-up (5.2)
-  int reset_counter = 0;        // + 1 after each loss
+  double world_confidence = 0;   // 0..1, margin of the static group over the runner-up (5.2)
+  bool world_ambiguous = false;  // it is too small: another group might be the world (DEGRADED)
+  int reset_counter = 0;         // + 1 after each loss
   int objects_size = 0;
   std::array<ObjectState, kMaxObjects> objects{};
   FrameReport report;

@@ -199,8 +199,8 @@ void Pipeline::State::publish() {
   result.reset_counter = reset_counter;
   result.pose_valid = first || ego_found();
   const EgoMotionConfig& c = config.ego_motion;
-  const bool weak =
-      static_cast<int>(fixed.size()) < c.degraded_static_points || world_confidence < c.degraded_confidence;
+  result.world_ambiguous = ego_found() && world_confidence < c.degraded_confidence;
+  const bool weak = static_cast<int>(fixed.size()) < c.degraded_static_points || result.world_ambiguous;
   result.state = first          ? VisionState::init
                  : !ego_found() ? VisionState::lost
                  : weak         ? VisionState::degraded

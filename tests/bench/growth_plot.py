@@ -32,7 +32,7 @@ def main():
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     rows = rows_of(sys.argv[1])
-    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), sharey=True, layout="constrained")
+    figure, axes = plt.subplots(1, 3, figsize=(11, 3.6), sharey=True)
     for axis, (kind, label) in zip(axes, PANELS):
         found = [(abscissa(kind, parts), row) for parts, row in rows if parts[:2] == ["step", kind]]
         if not found:
@@ -48,7 +48,8 @@ def main():
         axis.grid(alpha=0.3)
     axes[0].set_ylabel("ms, one thread")
     handles, labels = axes[0].get_legend_handles_labels()
-    figure.legend(handles[::-1], labels[::-1], loc="outside right center", fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0, 0, 0.87, 1))
+    figure.legend(handles[::-1], labels[::-1], loc="center right", fontsize=8, frameon=False)
     figure.savefig(sys.argv[2], dpi=80)
 
 

@@ -35,6 +35,11 @@ TEST(StateMachine, WithoutTroubleThePipelineSpeaks) {
   EXPECT_TRUE(p.result.pose_valid);
   EXPECT_EQ(settled({}, VisionState::init).reason, StateReason::starting);
   EXPECT_EQ(settled({}, VisionState::degraded).reason, StateReason::few_points);
+  Publication ambiguous;
+  ambiguous.result.state = VisionState::degraded;
+  ambiguous.result.world_ambiguous = true;
+  settle_state({}, ambiguous);
+  EXPECT_EQ(ambiguous.reason, StateReason::ambiguous_world);
 }
 
 TEST(StateMachine, WhatHasNoEstimateIsInvalid) {

@@ -172,6 +172,19 @@ TEST(Pipeline, ABodySeenAgainAfterALossHasTheMotionOfOneStep) {
   EXPECT_EQ(seen, 10);
 }
 
+TEST(Pipeline, AWorldThatAnotherGroupMightBeIsDegradedForThatReason) {
+  PipelineConfig config;
+  config.ego_motion.degraded_confidence = 2.0;  // more than anything can have
+  Pipeline doubting(config, kRig);
+  Pipeline pipeline({}, kRig);
+  for (int frame = 0; frame < 3; ++frame) {
+    const FrameResult result = step(doubting, frame, plane(frame));
+    EXPECT_EQ(result.state == VisionState::degraded, frame > 0);
+    EXPECT_EQ(result.world_ambiguous, frame > 0);
+    EXPECT_FALSE(step(pipeline, frame, plane(frame)).world_ambiguous);
+  }
+}
+
 TEST(Pipeline, GreyFromTheStartIsNeverAGoodMotion) {
   Pipeline pipeline({}, kRig);
   (void)step(pipeline, 0, grey());
