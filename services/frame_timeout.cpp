@@ -6,7 +6,7 @@
 namespace pelorus {
 namespace {
 
-constexpr int kPeriods = 4;
+constexpr int kPeriods = 3;  // told within five, of which the wait for the next pair and the release take up to two
 constexpr std::size_t kEnough = 3;  // intervals before the rate is believed
 constexpr Duration kUntilKnown = std::chrono::milliseconds(500);
 constexpr Duration kShortest = std::chrono::milliseconds(60);  // what an ordinary computer may keep a thread waiting
