@@ -9,6 +9,8 @@ import os
 import re
 import sys
 
+from tree_check import run_check
+
 # Layers of core, lowest first: a folder may include itself and everything to its left.
 CORE_CHAIN = ["base", "kernels", "geometry", "model", "frontend", "motion", "refine", "objects", "pipeline"]
 SOURCE_FOLDERS = ["core", "drivers", "services", "firmware-host", "tests"]
@@ -113,6 +115,10 @@ def source_files(root):
                 yield os.path.relpath(os.path.join(folder, name), root).replace(os.sep, "/")
 
 
+def code_files(root):
+    return (path for path in source_files(root) if SOURCE_NAME.search(path))
+
+
 def violations(root):
     for path in source_files(root):
         if VAGUE_NAME.search(path):
@@ -123,16 +129,7 @@ def violations(root):
 
 
 def main(arguments):
-    root = arguments[1] if len(arguments) > 1 else os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    checked = sum(1 for path in source_files(root) if SOURCE_NAME.search(path))
-    if checked == 0:
-        print(f"{root}: no source file found", file=sys.stderr)
-        return 1
-    found = list(violations(root))
-    for violation in found:
-        print(violation)
-    print(f"check_includes: {checked} files, {len(found)} violation(s)")
-    return 1 if found else 0
+    return run_check(arguments, "check_includes", code_files, violations, "files", "violation(s)")
 
 
 if __name__ == "__main__":

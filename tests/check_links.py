@@ -9,6 +9,8 @@ import os
 import re
 import sys
 
+from tree_check import run_check
+
 SKIPPED_FOLDERS = {".git", "build", "out", "node_modules"}
 LINK = re.compile(r"\]\(\s*<?([^()\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)")
 REFERENCE = re.compile(r"^\s{0,3}\[[^\]]+\]:\s*<?(\S+?)>?\s*$")
@@ -82,16 +84,7 @@ def violations(root):
 
 
 def main(arguments):
-    root = arguments[1] if len(arguments) > 1 else os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-    checked = sum(1 for _ in documents(root))
-    if checked == 0:
-        print(f"{root}: no document found", file=sys.stderr)
-        return 1
-    found = list(violations(root))
-    for violation in found:
-        print(violation)
-    print(f"check_links: {checked} documents, {len(found)} dangling link(s)")
-    return 1 if found else 0
+    return run_check(arguments, "check_links", documents, violations, "documents", "dangling link(s)")
 
 
 if __name__ == "__main__":

@@ -29,7 +29,7 @@ void touch_stack() {
 }
 
 // Named by the first processor on it; where the kernel does not tell, each processor is a core.
-int core_of(int processor) {
+int physical_core(int processor) {
   std::ifstream siblings("/sys/devices/system/cpu/cpu" + std::to_string(processor) + "/topology/thread_siblings_list");
   int first = processor;
   return siblings >> first ? first : processor;
@@ -68,7 +68,7 @@ int processor_to_bind(int n) {
   for (int cpu = 0; cpu < CPU_SETSIZE; ++cpu) {
     if (CPU_ISSET(cpu, &allowed)) processors.push_back(cpu);
   }
-  return binding_order(processors, core_of)[static_cast<std::size_t>(n) % processors.size()];
+  return binding_order(processors, physical_core)[static_cast<std::size_t>(n) % processors.size()];
 }
 
 std::string set_thread(const char* name, ThreadClass wanted, int processor) {

@@ -13,22 +13,16 @@ import os
 import sys
 
 from lcm_check import percentiles
-from lcm_log import events, health, odom
+from lcm_log import results_and_reports
 
 # Half a step of the contract (docs/can.md).
 HALF_STEP = {"velocity_mps": 5e-4, "position_m": 5e-3, "angle_rad": 5e-5}
 MOST_APART_US = 150_000  # between the release of a result and the last frame of its set
 
 
-def read_log(folder, name):
+def log_of(folder, name):
     (path,) = glob.glob(os.path.join(folder, name + ".lcm*"))
-    results, reports = [], []
-    for received_us, channel, data in events(path):
-        if channel.endswith(".VIS_ODOM"):
-            results.append({**odom(data), "received": received_us})
-        elif channel.endswith(".VIS_HEALTH"):
-            reports.append(health(data))
-    return results, reports
+    return path
 
 
 def euler(w, x, y, z):
@@ -59,7 +53,7 @@ def wrong_numbers(result, one):
 
 
 def check_sets(folder, expected):
-    results, reports = read_log(folder, "service")
+    results, reports = results_and_reports(log_of(folder, "service"))
     with open(os.path.join(folder, "sets.json"), encoding="utf-8") as lines:
         sets = [line for line in map(json.loads, filter(lambda l: l.startswith("{"), lines)) if "state" in line]
     counted = reports[-1]["can_sets_sent"]  # the last results leave after the last report
@@ -84,7 +78,7 @@ def check_sets(folder, expected):
 
 
 def check_down(folder, rate_hz):
-    _, reports = read_log(folder, "down")
+    _, reports = results_and_reports(log_of(folder, "down"))
     with open(os.path.join(folder, "down_ns"), encoding="ascii") as file:
         down_us = int(file.read()) / 1000
     told = next((r for r in reports if r["utime"] > down_us and " down" in r["can_text"]), None)

@@ -16,8 +16,8 @@ import os
 import sys
 
 from gv_faults import check_faults
-from gv_record import NO_PICTURES, Shown, read_log
-from lcm_log import events, tracks
+from gv_record import NO_PICTURES, Shown
+from lcm_log import events, results_and_reports, tracks
 
 CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped".split()
 MOST_ONE_SIDED = 0.02  # of the bodies: found or given up a pair earlier
@@ -27,7 +27,7 @@ HEALTH_LAG_US = 400_000  # a loss is in the counters so long after its exposure
 
 def check_drops(log, shown_path, rate_hz):
     shown = Shown(shown_path, rate_hz)
-    results, reports = read_log(log)
+    results, reports = results_and_reports(log)
     pictures = [r for r in results if r["reason"] != NO_PICTURES]
     first, last = shown.tick(pictures[0]["utime"]), shown.tick(pictures[-1]["utime"])
     answered = {shown.tick(r["utime"]) for r in pictures}
@@ -66,7 +66,7 @@ def counted_around(tick, shown, reports):
 
 def write_played(log, shown_path, rate_hz, dataset, out):
     shown = Shown(shown_path, rate_hz)
-    pictures = [r for r in read_log(log)[0] if r["reason"] != NO_PICTURES]
+    pictures = [r for r in results_and_reports(log)[0] if r["reason"] != NO_PICTURES]
     mav0 = os.path.join(dataset, "mav0") if os.path.isdir(os.path.join(dataset, "mav0")) else dataset
     mav0 = os.path.realpath(mav0)
     for camera, side in (("cam0", "left"), ("cam1", "right")):
@@ -116,7 +116,7 @@ class Differences:
 
 
 def check_poses(log, results_folder, tolerance_m=None, tolerance_deg=None):
-    live = [r for r in read_log(log)[0] if r["reason"] != NO_PICTURES]
+    live = [r for r in results_and_reports(log)[0] if r["reason"] != NO_PICTURES]
     with open(os.path.join(results_folder, "frames.csv"), encoding="ascii") as rows:
         frames = list(csv.DictReader(rows))
     with open(os.path.join(results_folder, "camera.tum"), encoding="ascii") as rows:

@@ -3,7 +3,8 @@
 import math
 from collections import namedtuple
 
-from gv_record import NO_PICTURES, Shown, read_log
+from gv_record import NO_PICTURES, Shown
+from lcm_log import results_and_reports
 
 # What a fault has to lead to: a state and its reason, and the counter that has to grow. None: nobody can know what is
 # wrong, but no pose may come of it.
@@ -149,7 +150,7 @@ def check_counted(episode, fault, shown, results, reports, until_us):
 
 def check_faults(log, shown_path, rate_hz, cameras, within=5):
     shown = Shown(shown_path, rate_hz)
-    results, reports = read_log(log)
+    results, reports = results_and_reports(log)
     bad, found = False, episodes(cameras)
     for episode in found:
         fault = episode.fault

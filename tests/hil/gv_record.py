@@ -2,19 +2,7 @@
 
 import csv
 
-from lcm_log import events, health, odom
-
 NO_PICTURES = "no pictures"
-
-
-def read_log(path):
-    results, reports = [], []
-    for received_us, channel, data in events(path):
-        if channel.endswith(".VIS_ODOM"):
-            results.append({**odom(data), "received": received_us})
-        elif channel.endswith(".VIS_HEALTH"):
-            reports.append(health(data))
-    return results, reports
 
 
 class Shown:

@@ -75,3 +75,14 @@ def health(data):
     for name in HEALTH_TEXTS:
         counters[name], offset = text(data, offset)
     return counters
+
+
+def results_and_reports(path):
+    """What the log holds of VIS_ODOM, each with when it was received [us], and of VIS_HEALTH."""
+    results, reports = [], []
+    for received_us, channel, data in events(path):
+        if channel.endswith(".VIS_ODOM"):
+            results.append({**odom(data), "received": received_us})
+        elif channel.endswith(".VIS_HEALTH"):
+            reports.append(health(data))
+    return results, reports

@@ -10,10 +10,9 @@
 #include <pelorus/vis_command_t.hpp>
 #include <random>
 #include <string>
-#include <vector>
 
+#include "firmware-host/pelorus/bus_options.h"
 #include "firmware-host/pelorus/replay/replay_interrupt.h"
-#include "firmware-host/runtime/config_loader.h"
 
 namespace pelorus {
 namespace {
@@ -25,9 +24,7 @@ constexpr int kPatience_ms = 50;
 
 struct CommandArguments {
   std::string command;
-  std::vector<std::string> configs;
-  std::string url;
-  std::string vehicle;
+  BusOptions bus;
   double timeout_s = 5;
 };
 
@@ -82,23 +79,19 @@ std::string not_answered(const Exchange& exchange, const CommandArguments& argum
 }
 
 Result<int> run_command(const CommandArguments& arguments) {
-  ServiceConfig config;
-  for (const std::string& file : arguments.configs) {
-    if (const Result<Ok> applied = apply_config_file(file, config); !applied) return applied.error();
-  }
-  if (!arguments.url.empty()) config.lcm.url = arguments.url;
-  if (!arguments.vehicle.empty()) config.lcm.vehicle = arguments.vehicle;
+  const Result<LcmConfig> bus = arguments.bus.resolve();
+  if (!bus) return bus.error();
   const ReplayInterrupt interrupt;
-  Exchange exchange(config.lcm, arguments.command);
-  if (!exchange.good()) return cannot_reach(config.lcm, "LCM cannot be opened");
-  if (!exchange.send()) return cannot_reach(config.lcm, "the command cannot be sent");
+  Exchange exchange(bus.value(), arguments.command);
+  if (!exchange.good()) return cannot_reach(bus.value(), "LCM cannot be opened");
+  if (!exchange.send()) return cannot_reach(bus.value(), "the command cannot be sent");
   const auto end = Clock::now() + std::chrono::milliseconds(static_cast<long>(1e3 * arguments.timeout_s));
   while (!exchange.answer() && Clock::now() < end) {
     if (ReplayInterrupt::requested()) return kInterruptedExitCode;
     exchange.listen();
   }
   if (!exchange.answer()) {
-    std::fprintf(stderr, "pelorus: %s\n", not_answered(exchange, arguments, config.lcm).c_str());
+    std::fprintf(stderr, "pelorus: %s\n", not_answered(exchange, arguments, bus.value()).c_str());
     return kNotDoneExitCode;
   }
   const vis_command_ack_t& answer = *exchange.answer();
@@ -121,10 +114,7 @@ Verb add_command(CLI::App& app) {
                    "VIS_IMAGE_LEFT; record_start, record_stop: the recorder")
       ->required()
       ->check(CLI::IsMember({"reset", "standby", "resume", "snapshot", "record_start", "record_stop"}));
-  parser->add_option("--config", arguments->configs, "Settings file of the service, for lcm.url and lcm.vehicle")
-      ->allow_extra_args(false);
-  parser->add_option("--url", arguments->url, "LCM's address in place of lcm.url");
-  parser->add_option("--vehicle", arguments->vehicle, "First part of the channels' names in place of lcm.vehicle");
+  arguments->bus.add_to(*parser);
   parser->add_option("--timeout", arguments->timeout_s, "How long to wait for the answer [s]")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();

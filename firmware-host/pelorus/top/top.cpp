@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "firmware-host/pelorus/bus_options.h"
 #include "firmware-host/pelorus/replay/replay_interrupt.h"
 #include "firmware-host/pelorus/top/bus_listener.h"
 #include "firmware-host/pelorus/top/status_page.h"
 #include "firmware-host/pelorus/top/terminal.h"
-#include "firmware-host/runtime/config_loader.h"
 
 namespace pelorus {
 namespace {
@@ -24,9 +24,7 @@ constexpr auto kRedraw = std::chrono::milliseconds(200);
 constexpr auto kPlainPeriod = std::chrono::seconds(1);
 
 struct TopArguments {
-  std::vector<std::string> configs;
-  std::string url;
-  std::string vehicle;
+  BusOptions bus;
   bool once = false;
   bool json = false;
   double timeout_s = 5;
@@ -111,14 +109,10 @@ int show_on(BusListener& listener) {
 }
 
 Result<int> run_top(const TopArguments& arguments) {
-  ServiceConfig config;
-  for (const std::string& file : arguments.configs) {
-    if (const Result<Ok> applied = apply_config_file(file, config); !applied) return applied.error();
-  }
-  if (!arguments.url.empty()) config.lcm.url = arguments.url;
-  if (!arguments.vehicle.empty()) config.lcm.vehicle = arguments.vehicle;
+  const Result<LcmConfig> bus = arguments.bus.resolve();
+  if (!bus) return bus.error();
   const ReplayInterrupt interrupt;
-  BusListener listener(config.lcm.url, config.lcm.vehicle);
+  BusListener listener(bus.value().url, bus.value().vehicle);
   if (arguments.once) return show_once(listener, arguments);
   if (arguments.json || !Terminal::is_usable()) return print_on(listener, arguments.json);
   return show_on(listener);
@@ -129,10 +123,7 @@ Result<int> run_top(const TopArguments& arguments) {
 Verb add_top(CLI::App& app) {
   auto arguments = std::make_shared<TopArguments>();
   CLI::App* parser = app.add_subcommand("top", "What the service is doing, heard over LCM; also over SSH");
-  parser->add_option("--config", arguments->configs, "Settings file of the service, for lcm.url and lcm.vehicle")
-      ->allow_extra_args(false);
-  parser->add_option("--url", arguments->url, "LCM's address in place of lcm.url");
-  parser->add_option("--vehicle", arguments->vehicle, "First part of the channels' names in place of lcm.vehicle");
+  arguments->bus.add_to(*parser);
   parser->add_flag("--once", arguments->once, "Show once, when every channel was heard, and end");
   parser->add_flag("--json", arguments->json, "JSON objects, one a line, in place of pages");
   parser->add_option("--timeout", arguments->timeout_s, "How long --once waits [s]")

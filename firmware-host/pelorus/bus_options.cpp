@@ -1,0 +1,24 @@
+#include "firmware-host/pelorus/bus_options.h"
+
+#include "firmware-host/runtime/config_loader.h"
+
+namespace pelorus {
+
+void BusOptions::add_to(CLI::App& parser) {
+  parser.add_option("--config", configs_, "Settings file of the service, for lcm.url and lcm.vehicle")
+      ->allow_extra_args(false);
+  parser.add_option("--url", url_, "LCM's address in place of lcm.url");
+  parser.add_option("--vehicle", vehicle_, "First part of the channels' names in place of lcm.vehicle");
+}
+
+Result<LcmConfig> BusOptions::resolve() const {
+  ServiceConfig config;
+  for (const std::string& file : configs_) {
+    if (const Result<Ok> applied = apply_config_file(file, config); !applied) return applied.error();
+  }
+  if (!url_.empty()) config.lcm.url = url_;
+  if (!vehicle_.empty()) config.lcm.vehicle = vehicle_;
+  return config.lcm;
+}
+
+}  // namespace pelorus
