@@ -1,8 +1,10 @@
 #include "firmware-host/runtime/process_setup.h"
 
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <array>
+#include <set>
 
 namespace pelorus {
 namespace {
@@ -22,12 +24,18 @@ TEST(BindingOrder, OnlyProcessorsThatMayBeUsedAreNamed) {
   EXPECT_EQ(binding_order(processors, [](int p) { return p & ~1; }), (Order{5, 1, 4}));
 }
 
-TEST(BindingOrder, OfThisMachineWrapsAround) {
-  const int last = processor_to_bind(0);
-  ASSERT_GE(last, 0);
-  int n = 1;
-  while (n < 4096 && processor_to_bind(n) != last) ++n;
-  EXPECT_LT(n, 4096);
+TEST(BindingOrder, OfThisMachineTakesEachProcessorOnceAndThenWrapsAround) {
+  cpu_set_t allowed;
+  CPU_ZERO(&allowed);
+  ASSERT_EQ(::sched_getaffinity(0, sizeof allowed, &allowed), 0);
+  const int count = CPU_COUNT(&allowed);
+  std::set<int> bound;
+  for (int n = 0; n < count; ++n) {
+    bound.insert(processor_to_bind(n));
+    EXPECT_EQ(processor_to_bind(n + count), processor_to_bind(n));
+  }
+  EXPECT_EQ(bound.size(), static_cast<std::size_t>(count));
+  for (const int processor : bound) EXPECT_TRUE(processor >= 0 && CPU_ISSET(processor, &allowed)) << processor;
 }
 
 }  // namespace
