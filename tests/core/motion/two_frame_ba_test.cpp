@@ -85,6 +85,18 @@ TEST(TwoFrameBa, CovarianceFollowsTheNoiseNotTheAssumption) {
   EXPECT_GT(sum / kTrials, 4.0);
 }
 
+TEST(TwoFrameBa, SwitchedOffItIsTheAlignmentOfTheTwoClouds) {
+  const WorldView view = mover(0.2, 0.3);  // all of them agree
+  TwoFrameBa off({.adjust = false}, 1000);
+  const MotionFit found = off.run(kRig, view.pairs, view.all(), Rigid3::Identity());
+  std::vector<PointMatch> clouds;
+  for (const PointPair& pair : view.pairs) clouds.push_back({pair.prev.p_cam, pair.curr.p_cam, 1.0});
+  const auto aligned = fit_rigid(clouds);
+  ASSERT_TRUE(aligned);
+  EXPECT_LT(se3_log(found.H_curr_prev * aligned->inverse()).norm(), 1e-9);
+  EXPECT_GT(se3_log(found.H_curr_prev * fit(view, view.all()).H_curr_prev.inverse()).norm(), 1e-4);
+}
+
 TEST(TwoFrameBa, TwoPointsAreTooFew) {
   const WorldView view = mover(0, 0.1);
   const Rigid3 H_start = se3_exp(twist(0.1, 0, 0, 0, 0, 0));

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <optional>
+
+#include "core/geometry/rigid_fit.h"
 #include "tests/core/pipeline/board_world.h"
 #include "tests/support/held_worker.h"
 
@@ -183,6 +187,75 @@ TEST(Pipeline, AWorldThatAnotherGroupMightBeIsDegradedForThatReason) {
     EXPECT_EQ(result.world_ambiguous, frame > 0);
     EXPECT_FALSE(step(pipeline, frame, plane(frame)).world_ambiguous);
   }
+}
+
+TEST(Pipeline, AWorldOfFewPointsIsDegradedButNotAmbiguous) {
+  PipelineConfig config;
+  config.ego_motion.degraded_static_points = config.front_end.max_points + 1;
+  Pipeline pipeline(config, kRig);
+  for (int frame = 0; frame < 3; ++frame) {
+    const FrameResult result = step(pipeline, frame, plane(frame));
+    EXPECT_EQ(result.state == VisionState::degraded, frame > 0);
+    EXPECT_FALSE(result.world_ambiguous);
+  }
+}
+
+// The state at the fourth frame of the board's passing when fewer points than `least` carry the motion too few.
+FrameResult fourth_frame(int least) {
+  PipelineConfig config;
+  config.ego_motion.degraded_static_points = least;
+  Pipeline pipeline(config, kRig);
+  FrameResult result;
+  for (int frame = 0; frame < 4; ++frame) result = step(pipeline, frame, plane_with_board(frame, {}));
+  return result;
+}
+
+// Points of the plane around the board stand among moving ones: suspect, but they fit.
+TEST(Pipeline, SuspectsThatFitCarryTheMotionAgain) {
+  const int fitting = fourth_frame(0).report.points_static;
+  ASSERT_GT(fitting, 50);
+  EXPECT_EQ(fourth_frame(fitting).state, VisionState::tracking);
+  EXPECT_EQ(fourth_frame(fitting + 1).state, VisionState::degraded) << "the limit is that of these points";
+}
+
+using PointsBefore = std::map<std::int64_t, Eigen::Vector3d>;
+
+// The alignment of the body's points of two frames.
+std::optional<Rigid3> aligned(BodyId body, const PointsBefore& before, std::span<const PointView> now) {
+  std::vector<PointMatch> clouds;
+  for (const PointView& point : now) {
+    const auto known = before.find(point.track.value);
+    if (point.body == body && known != before.end()) clouds.push_back({known->second, point.curr.p_cam, 1.0});
+  }
+  return fit_rigid(clouds);
+}
+
+// How far the board's motion before the camera is from the alignment of its points, in the mean of eight frames.
+double distance_from_alignment(bool bundle_adjustment) {
+  PipelineConfig config;
+  config.steps.bundle_adjustment = bundle_adjustment;
+  config.steps.object_window = false;  // has a motion of its own
+  Pipeline pipeline(config, kRig);
+  PointsBefore before;
+  Rigid3 T_world_prev = Rigid3::Identity();
+  double sum = 0;
+  for (int frame = 0; frame < 12; ++frame) {
+    const FrameResult result = step(pipeline, frame, plane_with_board(frame, {}));
+    if (frame >= 4) {  // before, its points still change
+      EXPECT_EQ(result.objects_size, 1);
+      const ObjectState& object = result.objects.front();
+      const Rigid3 H_curr_prev = result.T_world_cam.inverse() * object.M_world * T_world_prev;
+      sum += se3_log(H_curr_prev * aligned(object.id, before, pipeline.points()).value().inverse()).norm();
+    }
+    before.clear();
+    for (const PointView& point : pipeline.points()) before[point.track.value] = point.curr.p_cam;
+    T_world_prev = result.T_world_cam;
+  }
+  return sum / 8;
+}
+
+TEST(Pipeline, WithoutBundleAdjustmentTheMotionOfBodiesIsAnAlignmentToo) {
+  EXPECT_LT(distance_from_alignment(false), 0.25 * distance_from_alignment(true));
 }
 
 TEST(Pipeline, GreyFromTheStartIsNeverAGoodMotion) {
