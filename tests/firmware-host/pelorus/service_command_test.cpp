@@ -65,8 +65,12 @@ TEST_F(ServiceCommand, ReachesARunningServiceAndTellsItsAnswer) {
 }
 
 TEST_F(ServiceCommand, WithoutAnAnswerItEndsInTimeAndSaysWhatToDo) {
+  const auto start = std::chrono::steady_clock::now();
   const Said said = command(loopback_url(32), {"reset", "--timeout", "0.3"});
+  const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start;
   EXPECT_EQ(said.exit_code, 1);
+  EXPECT_GE(took.count(), 0.3);
+  EXPECT_LT(took.count(), 4.5) << "less than without --timeout";
   EXPECT_TRUE(says(said.text, "no answer within 0.3 s to 'reset' on TEST.VIS_COMMAND")) << said.text;
   EXPECT_TRUE(says(said.text, "is pelorusd running")) << said.text;
 }
