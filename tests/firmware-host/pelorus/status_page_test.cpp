@@ -62,6 +62,8 @@ BusView small_view() {
   health.recorder_text = "off";
   health.privileges_text = "real time, memory not locked: the limit is 64 kB, 2 threads pinned";
   health.can_sets_dropped = 17;
+  health.camera_reopens = 18;
+  health.steps_shed = 19;
   health.version = "0.1.0";
   view.health = {health, ago(0.5)};
   view.health_before = view.health;
@@ -96,6 +98,21 @@ TEST(StatusPage, TellsStateRatesDropsBusAndDisk) {
   EXPECT_TRUE(says(line_of(view, "CAN"), "can0 active, 12 sets")) << line_of(view, "CAN");
   EXPECT_TRUE(says(line_of(view, "DISK"), "78.5 GB free")) << line_of(view, "DISK");
   EXPECT_TRUE(says(line_of(view, "GRANTED"), "memory not locked: the limit is 64 kB")) << line_of(view, "GRANTED");
+}
+
+TEST(StatusPage, EachFaultIsToldWithItsOwnCountAndWhatIsNew) {
+  BusView view = small_view();
+  vis_health_t& m = view.health->message;
+  m.losses_of_track = 1;
+  m.camera_timeouts = 2;
+  m.frozen_spells = 3;
+  m.time_jumps = 4;
+  m.lcm_errors = 5;
+  m.deadline_misses = 6;
+  m.steps_shed = 7;
+  view.health_before->message = m;
+  view.health_before->message.steps_shed = 5;
+  EXPECT_EQ(line_of(view, "FAULTS"), "FAULTS   losses 1  silent 2  frozen 3  jumps 4  LCM 5  late 6  shed 7 (+2)");
 }
 
 TEST(StatusPage, BodiesAreListedByRangeWithClosingSpeed) {
@@ -246,6 +263,8 @@ TEST(StatusPage, JsonHoldsTheFactsOfRealMessages) {
   EXPECT_TRUE(json["health"]["temperature_degc"].IsNull());
   EXPECT_EQ(json["health"]["dropped_superseded"].as<int>(), 12);
   EXPECT_EQ(json["health"]["can_sets_dropped"].as<int>(), 17);
+  EXPECT_EQ(json["health"]["camera_reopens"].as<int>(), 18);
+  EXPECT_EQ(json["health"]["steps_shed"].as<int>(), 19);
   EXPECT_EQ(json["health"]["privileges"].as<std::string>(), view.health->message.privileges_text);
 }
 
