@@ -83,7 +83,7 @@ void transfer_chi2(const TransferMotion& motion, const TransferColumns& points, 
     const V px = hn::Add(rx, set(motion.t[0]));
     const V py = hn::Add(ry, set(motion.t[1]));
     const V pz = hn::Add(rz, set(motion.t[2]));
-    const auto in_front = hn::Gt(pz, set(1e-3));
+    const auto in_front = hn::Gt(pz, set(kLeastTransferDepth_m));
     const V iz = hn::Div(one, hn::IfThenElse(in_front, pz, one));
     const V fz = hn::Mul(f, iz);
     const Seen<V> slope{hn::Mul(px, iz), hn::Mul(py, iz), hn::Mul(hn::Sub(px, baseline), iz)};
@@ -94,9 +94,10 @@ void transfer_chi2(const TransferMotion& motion, const TransferColumns& points, 
     const Seen<V> mu = seen(fz, slope, hn::Mul(m, set(r[0])), hn::Mul(m, set(r[3])), hn::Mul(m, set(r[6])));
     const Seen<V> u{hn::Add(q.l, mu.l), hn::Add(q.v, mu.v), hn::Add(q.r, mu.r)};
     const Seen<V> v = seen(fz, slope, hn::Mul(m, set(r[1])), hn::Mul(m, set(r[4])), hn::Mul(m, set(r[7])));
-    const V square = solved_square(covariance(one, q, u, v), e);
-    const V value = hn::Mul(square, hn::LoadU(d, points.per_variance + i));
-    hn::StoreU(hn::IfThenElse(in_front, value, set(kImpossibleChi2)), d, chi2 + i);
+    const Symmetric<V> c = covariance(one, q, u, v);
+    const auto told = hn::Le(hn::Add(hn::Add(c.c00, c.c11), c.c22), set(kLargestTransferSpread));
+    const V value = hn::Mul(solved_square(c, e), hn::LoadU(d, points.per_variance + i));
+    hn::StoreU(hn::IfThenElse(hn::And(in_front, told), value, set(kImpossibleChi2)), d, chi2 + i);
   }
 }
 
@@ -135,7 +136,7 @@ double chi2_of(const TransferMotion& motion, const TransferColumns& points, std:
   const double ry = r[3] * x + r[4] * y + r[5] * z;
   const double rz = r[6] * x + r[7] * y + r[8] * z;
   const double pz = rz + motion.t[2];
-  if (!(pz > 1e-3)) return kImpossibleChi2;
+  if (!(pz > kLeastTransferDepth_m)) return kImpossibleChi2;
   const double iz = 1.0 / pz;
   const double fz = motion.f_px * iz;
   const double px = rx + motion.t[0];
@@ -150,6 +151,7 @@ double chi2_of(const TransferMotion& motion, const TransferColumns& points, std:
   const double c00 = 1.0 + (q.l * q.l + u.l * u.l + v.l * v.l);
   const double c11 = 1.0 + (q.v * q.v + u.v * u.v + v.v * v.v);
   const double c22 = 1.0 + (q.r * q.r + u.r * u.r + v.r * v.r);
+  if (!(c00 + c11 + c22 <= kLargestTransferSpread)) return kImpossibleChi2;
   const double c01 = q.l * q.v + u.l * u.v + v.l * v.v;
   const double c02 = q.l * q.r + u.l * u.r + v.l * v.r;
   const double c12 = q.v * q.r + u.v * u.r + v.v * v.r;

@@ -32,8 +32,11 @@ struct TransferMotion {
   double baseline_m;
 };
 
-// What a point gets that the motion carries behind the camera.
+// Of a point that the motion carries behind the camera or to where it says nothing: beside the camera's centre the
+// covariance of the residual grows without bound, and its inverse is rounding errors that may even be negative.
 inline constexpr double kImpossibleChi2 = 1e12;
+inline constexpr double kLeastTransferDepth_m = 1e-3;
+inline constexpr double kLargestTransferSpread = 1e6;  // trace of the residual's covariance over the measurement's
 
 // chi2[i] has 3 degrees of freedom.
 void transfer_chi2(const TransferMotion& motion, const TransferColumns& points, double* chi2);

@@ -161,49 +161,57 @@ void Grouping::score(const StereoRig& rig, const Rigid3& motion, std::vector<flo
 void Grouping::claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates) {
   for (std::size_t m = 0; m < motions_.size(); ++m) score(rig, motions_[m], motion_chi2_[m]);
   while (static_cast<int>(partition_.groups.size()) < config_.max_groups) {
-    std::size_t best = motions_.size();
-    double best_score = 0;
-    for (std::size_t m = 0; m < motions_.size(); ++m) {
-      double sum = 0;
-      for (std::size_t c = 0; c < candidates.size(); ++c) {
-        if (label_[c] < 0) sum += std::max(0.0, config_.gate_chi2 - static_cast<double>(motion_chi2_[m][c]));
-      }
-      if (sum > best_score) {
-        best_score = sum;
-        best = m;
-      }
-    }
+    const std::size_t best = most_explaining();
     if (best == motions_.size()) break;
-    Group group = empty_group();
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-      if (label_[c] < 0 && static_cast<double>(motion_chi2_[best][c]) < config_.gate_chi2) {
-        group.members.push_back(candidates[c]);
-      }
-    }
-    if (static_cast<int>(group.members.size()) < config_.min_group_points) {
-      spare_.push_back(std::move(group.members));
-      break;
-    }
-    const MotionFit fit = two_frame_ba_.run(rig, pairs, group.members, motions_[best]);
-    group.H_curr_prev = fit.outcome == StageOutcome::degenerate ? motions_[best] : fit.H_curr_prev;
-    score(rig, group.H_curr_prev, refined_chi2_);
-    const auto number = static_cast<std::int32_t>(partition_.groups.size());
-    int claimed = 0;
-    for (std::size_t c = 0; c < candidates.size(); ++c) {
-      if (label_[c] >= 0 || static_cast<double>(refined_chi2_[c]) >= config_.gate_chi2) continue;
-      label_[c] = number;
-      ++claimed;
-    }
-    if (claimed < config_.min_group_points) {
-      for (auto& label : label_) {
-        if (label == number) label = -1;
-      }
-      spare_.push_back(std::move(group.members));
-      break;
-    }
-    partition_.groups.push_back(std::move(group));
+    if (!claim(rig, pairs, candidates, best)) motion_chi2_[best].clear();
   }
   collect_members(candidates);
+}
+
+// Of what is left; motions_.size() when none explains any. Those without chi-squares are spent.
+std::size_t Grouping::most_explaining() const {
+  std::size_t best = motions_.size();
+  double best_score = 0;
+  for (std::size_t m = 0; m < motions_.size(); ++m) {
+    double sum = 0;
+    for (std::size_t c = 0; c < motion_chi2_[m].size(); ++c) {
+      if (label_[c] < 0) sum += std::max(0.0, config_.gate_chi2 - static_cast<double>(motion_chi2_[m][c]));
+    }
+    if (sum > best_score) {
+      best_score = sum;
+      best = m;
+    }
+  }
+  return best;
+}
+
+// False, and nothing claimed, when the motion explains too few points as proposed or as refined on them.
+bool Grouping::claim(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
+                     std::size_t proposal) {
+  Group group = empty_group();
+  const auto explained = [&](const std::vector<float>& chi2, std::size_t c) {
+    return label_[c] < 0 && static_cast<double>(chi2[c]) < config_.gate_chi2;
+  };
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (explained(motion_chi2_[proposal], c)) group.members.push_back(candidates[c]);
+  }
+  std::ptrdiff_t claimed = 0;
+  if (static_cast<int>(group.members.size()) >= config_.min_group_points) {
+    const MotionFit fit = two_frame_ba_.run(rig, pairs, group.members, motions_[proposal]);
+    group.H_curr_prev = fit.outcome == StageOutcome::degenerate ? motions_[proposal] : fit.H_curr_prev;
+    score(rig, group.H_curr_prev, refined_chi2_);
+    for (std::size_t c = 0; c < candidates.size(); ++c) claimed += explained(refined_chi2_, c);
+  }
+  if (claimed < config_.min_group_points) {
+    spare_.push_back(std::move(group.members));
+    return false;
+  }
+  const auto number = static_cast<std::int32_t>(partition_.groups.size());
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    if (explained(refined_chi2_, c)) label_[c] = number;
+  }
+  partition_.groups.push_back(std::move(group));
+  return true;
 }
 
 void Grouping::find_neighbours(PointPairs pairs, std::span<const PointIndex> candidates) {

@@ -50,6 +50,9 @@ class Grouping {
                               std::size_t known_motions);
   void score(const StereoRig& rig, const Rigid3& motion, std::vector<float>& chi2);
   void claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates);
+  [[nodiscard]] std::size_t most_explaining() const;
+  [[nodiscard]] bool claim(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
+                           std::size_t proposal);
   void reassign(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates);
   [[nodiscard]] Group empty_group();
   void find_neighbours(PointPairs pairs, std::span<const PointIndex> candidates);

@@ -13,7 +13,8 @@ inline constexpr double kChi2_3dof_990 = 11.345;
 inline constexpr double kChi2_3dof_999 = 16.266;
 
 // Squared Mahalanobis distance of z_b_px from the transfer of z_a_px by T_b_a; both measured with deviation
-// sigma_px per coordinate. 3 degrees of freedom. Infinite (1e12) when the point would be behind the camera.
+// sigma_px per coordinate. 3 degrees of freedom. Infinite (1e12) where the motion says nothing of the
+// point: behind the camera, or right beside its centre.
 [[nodiscard]] double transfer_chi2(const StereoRig& rig, const Rigid3& T_b_a, const Eigen::Vector3d& z_a_px,
                                    const Eigen::Vector3d& z_b_px, double sigma_px);
 

@@ -71,6 +71,29 @@ TEST(Transfer, AgreesWithTheMatrixForm) {
   }
 }
 
+// Far points under wild proposals come to lie beside the camera's centre, where the covariance cannot be inverted.
+TEST(Transfer, WildMotionsNeverGiveANegativeSquare) {
+  std::mt19937 rng(11);
+  std::normal_distribution<double> unit;
+  Scene scene = scene_of(40, 7);
+  for (PointPair& pair : scene.pairs) {  // 30 to 150 m off
+    const Eigen::Vector3d p_prev(5 * unit(rng), 2 * unit(rng), 30 + 120 * std::abs(std::sin(unit(rng))));
+    pair.prev.z_px = kRig.project(p_prev);
+    pair.prev.p_cam = kRig.triangulate(pair.prev.z_px);
+  }
+  TransferPoints points;
+  points.assign(kRig, scene.pairs, scene.all);
+  for (int k = 0; k < 2000; ++k) {
+    Vector6d xi;
+    for (int i = 0; i < 6; ++i) xi[i] = (i < 3 ? 40 : 0.5) * unit(rng);
+    const auto chi2 = points.chi2(kRig, se3_exp(xi));
+    for (std::size_t i = 0; i < chi2.size(); ++i) {
+      ASSERT_GE(chi2[i], 0) << "motion " << k << ", point " << i;
+      ASSERT_GE(transfer_chi2(kRig, se3_exp(xi), scene.pairs[i]), 0) << "motion " << k << ", point " << i;
+    }
+  }
+}
+
 TEST(Transfer, TakesEveryStridethPoint) {
   const Scene scene = scene_of(20, 6);
   TransferPoints points;

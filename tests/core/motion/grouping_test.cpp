@@ -94,6 +94,24 @@ TEST(Grouping, GroupOfAndMembersTellTheSame) {
   EXPECT_EQ(from_members, partition.group_of);
 }
 
+// A motion may explain its points so well that it comes first, though they are too few for a group.
+TEST(Grouping, AMotionOfTooFewPointsDoesNotEndTheSearch) {
+  PointWorld world(150);
+  world.add_body(13, {-0.6, -0.2, 2.2}, 0.25, twist(0.04, 0.01, 0, 0, 0.02, 0.01));
+  world.add_body(20, {0.7, 0.2, 2.0}, 0.25, twist(-0.02, -0.03, 0.02, 0.02, 0, -0.03));
+  WorldView view = world.observe(6, kNoise_px, kNoise_px);
+  for (std::size_t i = 0; i < view.pairs.size(); ++i) {
+    if (view.body_of[i] == 2) view.pairs[i].sigma_px /= std::sqrt(3.0);  // explained, but none of them well
+  }
+  GroupingConfig config;
+  config.min_group_points = 14;
+  Grouping grouping(config, {}, {}, 1000);
+  const std::vector<Rigid3> priors{view.H_curr_prev(1), view.H_curr_prev(2)};
+  const Partition& partition = grouping.run(kRig, view.pairs, view.all(), priors, 1, {});
+  ASSERT_EQ(partition.groups.size(), 2U);
+  EXPECT_EQ(body_of(view, partition.groups[1]), 2);
+}
+
 TEST(Grouping, AMoverWithTheImageMotionOfTheFloorStillSplits) {
   // Half as far, it moves with half the camera's shift: the same flow in both images, at another depth.
   PointWorld world(0);
