@@ -20,7 +20,9 @@ struct SurfConfig {
   int intervals = 4;        // filter sizes per octave, 3..5
   int sampling_step = 2;    // pixels between samples of the first octave: 1, 2 or 4; doubles with each octave
   float threshold = 10.0F;  // least determinant, grey levels^2
-  bool upright = true;      // no orientation: for rigs that do not roll between images
+  // Turbid water dims all determinants alike: where their median is low, the least one is a third of it, down to this.
+  float faint_threshold = 4.0F;
+  bool upright = true;  // no orientation: for rigs that do not roll between images
   int max_points = 1500;
   // One blob answers in neighbouring filter sizes of two octaves: only the stronger answer is kept. Twins cost points
   // and fail the ratio test against each other.

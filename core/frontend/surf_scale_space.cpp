@@ -14,8 +14,9 @@ namespace {
 constexpr int kRowSlack = 16;                // hessian_row may write past the row
 constexpr float kScalePerFilter = 1.2F / 9;  // the 9x9 filter stands for sigma 1.2 (Bay, section 3.3)
 
-constexpr int kCellPx = 16;           // of the search for twins
-constexpr float kTwinScales = 1.23F;  // ratio of scales: neighbouring filters of two octaves, 27/21 and less
+constexpr float kLeastOfMedian = 1.0F / 3;  // at 10 grey levels^2, clear pictures have medians above 30
+constexpr int kCellPx = 16;                 // of the search for twins
+constexpr float kTwinScales = 1.23F;        // ratio of scales: neighbouring filters of two octaves, 27/21 and less
 
 int filter_size(int octave, int interval) { return 3 * ((2 << octave) * (interval + 1) + 1); }
 
@@ -161,7 +162,8 @@ void SurfScaleSpace::find_in(int octave, int interval) {
   const int first = above.first + 1;
   for (int j = first; j < above.last_v; ++j) {
     const Neighbourhood n(below, middle, above, j);
-    const int found = local_maxima(n.rows, first, above.last_u - first, config_.threshold, columns_.data());
+    const int found = local_maxima(n.rows, first, above.last_u - first,
+                                   std::min(config_.threshold, config_.faint_threshold), columns_.data());
     for (int k = 0; k < found; ++k) {
       const int i = columns_[static_cast<std::size_t>(k)];
       const Peak peak = interpolate(n, i);
@@ -204,6 +206,15 @@ bool SurfScaleSpace::has_twin(const SurfPoint& point) const {
 }
 
 // Of candidates ordered by strength.
+void SurfScaleSpace::drop_weak() {
+  if (candidates_.empty() || config_.faint_threshold >= config_.threshold) return;
+  const float median = candidates_[candidates_.size() / 2].point.response;
+  const float least = std::clamp(kLeastOfMedian * median, config_.faint_threshold, config_.threshold);
+  const auto weak = [least](const Candidate& c) { return c.point.response < least; };
+  candidates_.erase(std::find_if(candidates_.begin(), candidates_.end(), weak), candidates_.end());
+}
+
+// Of candidates ordered by strength.
 void SurfScaleSpace::drop_twins() {
   std::fill(latest_in_cell_.begin(), latest_in_cell_.end(), -1);
   std::size_t kept = 0;
@@ -239,6 +250,7 @@ std::span<const SurfPoint> SurfScaleSpace::find_maxima(const IntegralImage& inte
   const auto wanted = static_cast<std::size_t>(config_.max_points);
   keep_strongest(config_.distinct ? wanted + wanted / 2 : wanted);  // some are twins
   std::sort(candidates_.begin(), candidates_.end(), stronger);
+  drop_weak();
   if (config_.distinct) drop_twins();
   points_.clear();
   for (const Candidate& c : candidates_) {

@@ -50,6 +50,7 @@ class SurfScaleSpace {
   void find_in(int octave, int interval);
   [[nodiscard]] bool searched_before(int octave, int interval) const;
   void keep_strongest(std::size_t wanted);
+  void drop_weak();
   void drop_twins();
   [[nodiscard]] bool has_twin(const SurfPoint& point) const;
   [[nodiscard]] const ResponseLayer& layer(int octave, int interval) const;

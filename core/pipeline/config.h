@@ -39,7 +39,7 @@ struct EgoMotionConfig {
   double sigma_learning_rate = 0.1;  // per frame
   double point_gate_chi2 = 9.0;      // mean over the window above which a point leaves the static scene
   int unexplained_frames = 6;        // a point that fits no body for so long is given up
-  double window_pull = 0.2;          // share of the way to the window's pose that each frame takes
+  double window_pull = 0.05;         // share of the way to the window's pose that each frame takes
   // Turn, or shift by the distance of what is seen, of the pose by what the window says: beyond it the window starts
   // anew.
   double max_window_error_rad = 0.03;

@@ -77,6 +77,7 @@ void list(FieldList& f, SurfConfig& c) {
   f.add("intervals", c.intervals, 3, 5);
   f.add("sampling_step_px", c.sampling_step, 1, 4);
   f.add("threshold", c.threshold, 0, 1e6);
+  f.add("faint_threshold", c.faint_threshold, 0, 1e6);
   f.add("upright", c.upright);
   f.add("max_points", c.max_points, 10, 10000);
   f.add("distinct", c.distinct);

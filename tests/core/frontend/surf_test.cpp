@@ -205,6 +205,31 @@ TEST(Surf, TheStrongestComeFirstAndTheCountIsBounded) {
   }
 }
 
+// What turbid water does to a picture: all contrasts shrink alike.
+TEST(Surf, WhereContrastIsLowTheThresholdFallsWithIt) {
+  const AnalyticTexture texture(5, 6.0);
+  const auto seen_through = [&](double contrast) {
+    return test::render(texture, kWidth, kHeight, 0.0, 1, unmoved,
+                        [=](double grey, int, int) { return 128 + contrast * (grey - 128); });
+  };
+  SurfConfig config = config_for(true);
+  config.max_points = 5000;
+  config.threshold = 10.0F;
+  config.faint_threshold = 10.0F;
+  const auto clear = features_of(seen_through(1.0), config).points;
+  const auto dim_fixed = features_of(seen_through(0.25), config).points;
+  config.faint_threshold = 1.0F;
+  const auto clear_falling = features_of(seen_through(1.0), config).points;
+  const auto dim_falling = features_of(seen_through(0.25), config).points;
+  ASSERT_GT(clear.size(), 100U);
+  EXPECT_LT(dim_fixed.size(), clear.size() / 2);
+  EXPECT_GT(dim_falling.size(), clear.size() * 3 / 4);
+  EXPECT_LE(clear_falling.size(), clear.size() * 102 / 100);
+  EXPECT_GE(clear_falling.size(), clear.size());
+  for (const SurfPoint& p : clear_falling) EXPECT_GE(p.response, 10.0F);
+  for (const SurfPoint& p : dim_falling) EXPECT_GE(p.response, 1.0F);
+}
+
 int twins_in(const std::vector<SurfPoint>& points) {
   int twins = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
