@@ -21,6 +21,8 @@ class SideThread final : public SideWorker {
   void start(SideWork work) override;
   [[nodiscard]] bool done() const override;
   void wait() override;
+  // Pieces done so far: for the watchdog. Thread-safe, as done() is.
+  [[nodiscard]] std::uint32_t finished() const { return finished_.load(std::memory_order_relaxed); }
 
  private:
   void run();

@@ -226,8 +226,8 @@ void App::send_report(HealthReport& report, Timestamp now) {
   p.service->desk.wake.ring();
 }
 
-// Fed only while every part moves: a service that hangs is better killed and started anew.
-void App::feed_watchdog() {
+// Which parts have moved since the last look.
+void App::look_at_progress() {
   Parts& p = *parts_;
   const Clock::time_point now = Clock::now();
   if (p.service->vision) p.progress.look("vision", p.service->vision->status().turns, false, now);
@@ -238,6 +238,16 @@ void App::feed_watchdog() {
     const bool searching = cameras[i].state != CaptureState::streaming && cameras[i].state != CaptureState::silent;
     p.progress.look("camera " + std::to_string(i), c.frames + c.timeouts + c.incomplete, searching, now);
   }
+  // Vision does not wait for the refinement of the ego motion: without this its hang would show in no message.
+  const SideThread& refine = p.service->workers->refine;
+  p.progress.look("refinement", refine.finished(), refine.done(), now);
+}
+
+// Fed only while every part moves: a service that hangs is better killed and started anew.
+void App::feed_watchdog() {
+  Parts& p = *parts_;
+  look_at_progress();
+  const Clock::time_point now = Clock::now();
   const std::string stuck = p.service->vision ? p.progress.stuck(now) : "";
   if (!stuck.empty() && !p.logged_stuck) p.log.line(LogLevel::error, stuck + " stands still");
   p.logged_stuck = !stuck.empty();

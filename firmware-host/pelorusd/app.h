@@ -35,6 +35,7 @@ class App {
   void report_health();
   void report_changes();
   void send_report(HealthReport& report, Timestamp now);
+  void look_at_progress();
   void feed_watchdog();
   void log_cameras();
   void log_state();

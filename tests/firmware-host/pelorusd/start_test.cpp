@@ -1,11 +1,8 @@
-// Starting pelorusd: messages and exit codes, the service manager, and a computer without a multicast route.
+// Starting pelorusd: messages and exit codes, and a computer without a multicast route.
 #include <gtest/gtest.h>
-#include <sys/socket.h>
-#include <sys/un.h>
 
 #include <array>
 #include <cstdio>
-#include <cstring>
 
 #include "tests/firmware-host/pelorusd/running_service.h"
 #include "tests/support/private_network.h"
@@ -76,45 +73,6 @@ TEST(Start, CheckConfigEndsWithoutStarting) {
   const Outcome good = start_with("source:\n  path: /nonexistent\n", "--check-config");
   EXPECT_EQ(good.exit_code, 0);
   EXPECT_NE(good.text.find("source.path='/nonexistent'"), std::string::npos) << good.text;
-}
-
-TEST(Start, ServiceManagerHearsReadyWatchdogAndStopping) {
-  if (!test::lcm_available()) GTEST_SKIP() << "no multicast route: ip route add 224.0.0.0/4 dev lo";
-  const TemporaryFolder folder;
-  const std::string name = (folder.path() / "notify").string();
-  sockaddr_un address{};
-  address.sun_family = AF_UNIX;
-  std::memcpy(address.sun_path, name.data(), name.size());
-  const int fd = ::socket(AF_UNIX, SOCK_DGRAM, 0);
-  ASSERT_EQ(::bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
-  const timeval patience{10, 0};
-  ::setsockopt(fd, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-  ::setenv("NOTIFY_SOCKET", name.c_str(), 1);
-  ::setenv("WATCHDOG_USEC", "1000000", 1);
-  test::RunningService service(test::rendered_dive(), "# repeat\n", 8);
-  ::unsetenv("NOTIFY_SOCKET");
-  ::unsetenv("WATCHDOG_USEC");
-  std::string heard;
-  int watchdogs = 0;
-  const auto hear_until = [&](const std::string& wanted, int times) {
-    std::array<char, 512> text{};
-    for (int count = 0; count < times;) {
-      const ssize_t length = ::recv(fd, text.data(), text.size(), 0);
-      if (length <= 0) return false;
-      const std::string part(text.data(), static_cast<std::size_t>(length));
-      heard += part + "\n";
-      watchdogs += part == "WATCHDOG=1" ? 1 : 0;
-      count += part.find(wanted) != std::string::npos ? 1 : 0;
-    }
-    return true;
-  };
-  EXPECT_TRUE(hear_until("READY=1", 1)) << heard;
-  EXPECT_TRUE(hear_until("WATCHDOG=1", 5)) << heard;
-  EXPECT_TRUE(hear_until("STATUS=TRACKING", 1)) << heard;
-  service.process->send(SIGTERM);
-  EXPECT_TRUE(hear_until("STOPPING=1", 1)) << heard;
-  EXPECT_EQ(service.process->wait(), 0);
-  ::close(fd);
 }
 
 // In a child, because a process cannot leave a namespace it entered. Exit code 0: all went as it should.

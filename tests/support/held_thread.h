@@ -1,0 +1,48 @@
+#pragma once
+// One thread of another process, held still while its other threads go on: what a thread that hangs looks like from
+// outside. By ptrace, so only for processes that the test may trace (its own children).
+
+#include <sys/ptrace.h>
+#include <sys/wait.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/support/temporary_folder.h"
+
+namespace pelorus::test {
+
+// The thread of that name (/proc/PID/task/*/comm); 0: none.
+inline pid_t thread_named(pid_t process, const std::string& name) {
+  std::error_code ignored;
+  for (const auto& task : std::filesystem::directory_iterator("/proc/" + std::to_string(process) + "/task", ignored)) {
+    if (read_text(task.path() / "comm") == name + "\n") return std::stoi(task.path().filename());
+  }
+  return 0;
+}
+
+class HeldThread {
+ public:
+  explicit HeldThread(pid_t thread) : thread_(thread) {
+    if (thread_ <= 0 || ::ptrace(PTRACE_SEIZE, thread_, nullptr, nullptr) != 0) return;
+    (void)::ptrace(PTRACE_INTERRUPT, thread_, nullptr, nullptr);
+    int status = 0;
+    held_ = ::waitpid(thread_, &status, __WALL) == thread_ && WIFSTOPPED(status);
+  }
+  ~HeldThread() { release(); }
+  HeldThread(const HeldThread&) = delete;
+  HeldThread& operator=(const HeldThread&) = delete;
+
+  // False: no such thread, or it may not be traced.
+  [[nodiscard]] bool held() const { return held_; }
+  void release() {
+    if (held_) (void)::ptrace(PTRACE_DETACH, thread_, nullptr, nullptr);
+    held_ = false;
+  }
+
+ private:
+  pid_t thread_;
+  bool held_ = false;
+};
+
+}  // namespace pelorus::test
