@@ -4,7 +4,8 @@
 # a RAM overlay, so programs built here run unchanged. Needs no rights and no KVM; the kernel is downloaded once.
 #
 # usage: guest.sh [-t SECONDS] [-o FOLDER] [-m "MODULE ..."] [-v] [-r FOLDER] [-s | -S] -- COMMAND [ARGUMENT ...]
-#   -o  shared with the guest, writable, as /out     -m  further kernel modules     -v  kernel messages
+#   -o  shared with the guest, writable, as /out     -v  kernel messages
+#   -m  further kernel modules; v4l2loopback (/dev/video10, 11) is built from Debian's sources once, nothing is installed
 #   -r  the guest's root in place of this file system    -s  boots that root's systemd; the command is a service of it
 #   -S  this file system's systemd as process 1, with none of this machine's services; the command is a unit of it
 # Exit code: the command's; 124 after the time limit (default 300), 125 when the guest died, 77 when the machine
@@ -43,7 +44,11 @@ fetch_kernel() {
   [ -n "$package" ] || { echo "guest.sh: apt knows no linux-image-amd64" >&2; exit 77; }
   mkdir -p "$cache"
   work=$(mktemp -d "$cache/fetch.XXXXXX")
-  (cd "$work" && apt-get -q download "$package" >&2 && dpkg-deb -x ./*.deb kernel && rm ./*.deb)
+  (cd "$work" && apt-get -q download "$package" >&2 && dpkg-deb -x ./*.deb kernel && rm ./*.deb) || {
+    rm -rf "$work"
+    echo "guest.sh: the package $package cannot be had" >&2
+    exit 77
+  }
   depmod -b "$work/kernel" "$(ls "$work/kernel/lib/modules")"
   python3 - "$work"/kernel/boot/vmlinuz-* "$work/kernel/vmlinux" <<'PY'
 import lzma, sys
@@ -56,6 +61,29 @@ PY
 }
 [ -e "$cache/kernel/vmlinux" ] || fetch_kernel
 version=$(ls "$cache/kernel/lib/modules")
+
+# v4l2loopback for that kernel. Headers are unpacked only; what they say of their own place is set right.
+build_loopback() {
+  local work headers=linux-headers-$version
+  work=$(mktemp -d "$cache/build.XXXXXX")
+  (cd "$work" && apt-get -q download "$headers" "${headers%-amd64}-common" "linux-kbuild-${version%.*}" v4l2loopback-dkms >&2 &&
+    for package in ./*.deb; do dpkg-deb -x "$package" .; done &&
+    sed -i "s#/usr/src/#$work/usr/src/#" "usr/src/$headers/Makefile" &&
+    make -s -C usr/src/v4l2loopback-* KERNEL_DIR="$work/usr/src/$headers" v4l2loopback.ko >&2 &&
+    mv usr/src/v4l2loopback-*/v4l2loopback.ko "$cache/v4l2loopback-$version.ko") || {
+    rm -rf "$work"
+    echo "guest.sh: v4l2loopback cannot be built for the kernel $version (needs build-essential and the packages of apt)" >&2
+    exit 77
+  }
+  rm -rf "$work"
+}
+case " $modules " in
+  *" v4l2loopback "*)
+    loopback=$cache/v4l2loopback-$version.ko
+    [ -e "$loopback" ] || build_loopback
+    modules=${modules/v4l2loopback/$loopback}
+    ;;
+esac
 
 share=${out:-$(mktemp -d)}
 boot=$(mktemp -d)
@@ -109,7 +137,7 @@ $b mount -t devtmpfs none /dev; $b mount -t proc none /proc; $b mount -t sysfs n
 for module in $($b cat /modules/order); do
   case $module in
     vivid.ko) options="n_devs=2 num_inputs=1,1 input_types=0,0 node_types=0x1,0x1 vid_cap_nr=0,1 no_error_inj=0" ;;
-    v4l2loopback.ko) options="devices=2 video_nr=10,11 exclusive_caps=1,1" ;;
+    v4l2loopback*.ko) options="devices=2 video_nr=10,11 exclusive_caps=1,1" ;;
     *) options= ;;
   esac
   $b insmod /modules/$module $options || echo "guest: module $module failed"

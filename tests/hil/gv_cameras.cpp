@@ -18,34 +18,12 @@
 #include <string>
 #include <vector>
 
-#include "drivers/replay/dataset.h"
+#include "tests/hil/film.h"
 #include "tests/support/fake_gv_camera.h"
 
 namespace pelorus {
 namespace {
 
-struct Film {
-  std::vector<Image> frames[2];
-};
-
-Result<Film> load(const std::string& path) {
-  auto source = open_dataset(path);
-  if (!source) return source.error();
-  Film film;
-  while (true) {
-    SourcePair pair;
-    const Result<bool> read = source.value()->next(pair);
-    if (!read) return read.error();
-    if (!read.value()) return film;
-    film.frames[0].push_back(std::move(pair.left));
-    film.frames[1].push_back(std::move(pair.right));
-  }
-}
-
-struct Shown {
-  std::int64_t time_ns;
-  std::size_t frame;
-};
 constexpr std::size_t kMostShown = 1'000'000;  // hours
 
 // One of the two cameras and what is wrong with it.
@@ -91,20 +69,12 @@ class Side {
   void paint(std::uint8_t* pixels, int width, int height, std::int64_t time_ns) {
     // The tick at which it fired: painting is late under load, early never by more than a clock's grain.
     const auto tick = static_cast<std::int64_t>(std::floor(static_cast<double>(time_ns) / period_ns_ + 0.25));
-    if (!frozen_) shown_ = index_at(tick - late_);
+    if (!frozen_) shown_ = Film::index_at(tick - late_, frames_.size());
     if (log_.size() < kMostShown) log_.push_back({std::llround(static_cast<double>(tick) * period_ns_), shown_});
     const Image& frame = (swapped_ ? others_ : frames_)[shown_];
     for (int v = 0; v < height && v < frame.height(); ++v)
       std::copy_n(frame.row(v), std::min(width, frame.width()), pixels + static_cast<std::ptrdiff_t>(v) * width);
   }
-  // Forth and back: 0, 1, ..., n-1, n-2, ..., 1, 0, 1, ...
-  [[nodiscard]] std::size_t index_at(std::int64_t tick) const {
-    const auto n = static_cast<std::int64_t>(frames_.size());
-    if (n == 1) return 0;
-    const std::int64_t phase = tick % (2 * n - 2);
-    return static_cast<std::size_t>(phase < n ? phase : 2 * n - 2 - phase);
-  }
-
   const std::vector<Image>& frames_;
   const std::vector<Image>& others_;  // of the other camera
   std::string address_;
@@ -141,20 +111,8 @@ void obey(const std::string& line, std::array<Side*, 2> sides) {
   if (verb == "clock") side.set_clock(value);
 }
 
-bool write_shown(const char* path, const std::array<const Side*, 2>& sides) {
-  std::FILE* file = std::fopen(path, "w");
-  if (file == nullptr) return false;
-  for (std::size_t side = 0; side < 2; ++side) {
-    for (const Shown& shown : sides[side]->log()) {
-      std::fprintf(file, "%s,%lld,%zu\n", side == 0 ? "left" : "right", static_cast<long long>(shown.time_ns),
-                   shown.frame);
-    }
-  }
-  return std::fclose(file) == 0;
-}
-
 int run(int count, char** arguments) {
-  const Result<Film> film = load(arguments[1]);
+  const Result<Film> film = Film::load(arguments[1]);
   if (!film) {
     std::fprintf(stderr, "%s\n", film.error().message().c_str());
     return exit_code(film.error().code);
@@ -175,7 +133,7 @@ int run(int count, char** arguments) {
               static_cast<unsigned long long>(right.painted()));
   left.off();
   right.off();
-  if (count > 5 && !write_shown(arguments[5], {&left, &right})) {
+  if (count > 5 && !write_shown(arguments[5], left.log(), right.log())) {
     std::fprintf(stderr, "gv_cameras: cannot write %s\n", arguments[5]);
     return 6;
   }

@@ -3,8 +3,9 @@
 
 usage: gv_check.py drops LOG SHOWN RATE_HZ            every exposure is a result, or a counted loss with its cause
        gv_check.py played LOG SHOWN RATE_HZ DATASET OUT   the pairs of the results as an EuRoC folder, for pelorus replay
-       gv_check.py poses LOG RESULTS [TOLERANCE_M TOLERANCE_DEG]   results and bodies against those of `pelorus replay` of the
-                                                                   same pairs
+       gv_check.py poses LOG RESULTS [TOLERANCE_M TOLERANCE_DEG [TOLERANCE_OF_BODIES_DEG]]
+                                                                   results and bodies against those of `pelorus replay` of
+                                                                   the same pairs
        gv_check.py faults LOG SHOWN RATE_HZ CAMERAS_TXT [FRAMES]   each fault is told as a state within FRAMES (5), counted
                                                                    as injected, and over when it is over
 Exit code 1 when it is not so.
@@ -115,7 +116,7 @@ class Differences:
         return max(self.apart_m) > float(tolerance_m) or max(self.turned_deg) > float(tolerance_deg)
 
 
-def check_poses(log, results_folder, tolerance_m=None, tolerance_deg=None):
+def check_poses(log, results_folder, tolerance_m=None, tolerance_deg=None, bodies_deg=None):
     live = [r for r in results_and_reports(log)[0] if r["reason"] != NO_PICTURES]
     with open(os.path.join(results_folder, "frames.csv"), encoding="ascii") as rows:
         frames = list(csv.DictReader(rows))
@@ -143,7 +144,7 @@ def check_poses(log, results_folder, tolerance_m=None, tolerance_deg=None):
     if not differences.apart_m:
         return True
     differences.tell()
-    bodies_bad = check_bodies(log, results_folder, tolerance_m, tolerance_deg)
+    bodies_bad = check_bodies(log, results_folder, tolerance_m, bodies_deg or TURNED_MORE * float(tolerance_deg or 0))
     if tolerance_m is None:
         return False
     return unequal > 0 or differences.beyond(tolerance_m, tolerance_deg) or bodies_bad
@@ -187,7 +188,7 @@ def check_bodies(log, results_folder, tolerance_m, tolerance_deg):
     differences.tell()
     if tolerance_m is None:
         return False
-    return one_sided > MOST_ONE_SIDED * total or differences.beyond(tolerance_m, TURNED_MORE * float(tolerance_deg))
+    return one_sided > MOST_ONE_SIDED * total or differences.beyond(tolerance_m, tolerance_deg)
 
 
 CHECKS = {"drops": check_drops, "played": write_played, "poses": check_poses, "faults": check_faults}
