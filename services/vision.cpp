@@ -83,12 +83,21 @@ void Vision::take(const StereoPair& pair) {
   const bool usable = is_usable(circumstances);
   if (usable) step(pair, circumstances.capture.capture_time, publication);
   settle_state(circumstances, publication);
+  if (publication.result.state == VisionState::lost) show_lost(pair);
   const Timestamp time = circumstances.capture.capture_time;
   if (parts_.preview != nullptr && circumstances.calibration_fits && parts_.preview->due(time)) {
     const ImageView left = usable && !parts_.rectifier.is_pass_through() ? left_.view() : pair.left();
     parts_.preview->offer(left, publication, usable ? pipeline_->points() : std::span<const PointView>{});
   }
   post(publication, time + from_ms(timing_.latency_ms));
+}
+
+void Vision::show_lost(const StereoPair& pair) {
+  if (parts_.lost_pairs == nullptr || !parts_.control.lost_pair_wanted.exchange(false)) return;
+  SourcePair& shown = parts_.lost_pairs->draft();
+  shown.left.assign(pair.left());
+  shown.right.assign(pair.right());
+  (void)parts_.lost_pairs->post();
 }
 
 Circumstances Vision::look(const StereoPair& pair) {

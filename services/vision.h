@@ -11,9 +11,11 @@
 #include <thread>
 
 #include "core/base/counter.h"
+#include "core/base/mailbox.h"
 #include "core/geometry/rectifier.h"
 #include "core/pipeline/pipeline.h"
 #include "drivers/capture_clock.h"
+#include "drivers/stereo_source.h"
 #include "drivers/stereo_sync.h"
 #include "services/capture_watch.h"
 #include "services/frame_timeout.h"
@@ -28,7 +30,8 @@ namespace pelorus {
 // Requests to the vision thread, from any other.
 struct VisionControl {
   std::atomic<bool> standby{false};
-  std::atomic<std::uint32_t> resets{0};  // each increment starts the pipeline anew
+  std::atomic<std::uint32_t> resets{0};       // each increment starts the pipeline anew
+  std::atomic<bool> lost_pair_wanted{false};  // the next pair that ends LOST goes into VisionParts::lost_pairs
 };
 
 struct VisionStatus {
@@ -54,6 +57,8 @@ struct VisionParts {
   Preview* preview = nullptr;    // may be absent
   Recorder* recorder = nullptr;  // may be absent
   PipelineWorkers workers = {};  // absent ones: the vision thread does their work
+  // May be absent; with room for the pictures, so that giving one costs no heap.
+  Mailbox<SourcePair>* lost_pairs = nullptr;
 };
 
 class Vision {
@@ -67,6 +72,7 @@ class Vision {
   void run(const std::stop_token& stop);
   void take(const StereoPair& pair);
   void tell_missing();
+  void show_lost(const StereoPair& pair);
   [[nodiscard]] Circumstances look(const StereoPair& pair);
   void step(const StereoPair& pair, Timestamp capture_time, Publication& publication);
   void post(Publication& publication, Timestamp release_due);

@@ -127,6 +127,7 @@ void App::tick() {
   Parts& p = *parts_;
   take_samples();
   log_cameras();
+  log_exchanged_sides();
   const Clock::time_point now = Clock::now();
   if (now >= p.next_health) {
     p.next_health = std::max(p.next_health + kHealthPeriod, now);
@@ -176,6 +177,15 @@ void App::log_cameras() {
     if (problem.empty()) p.log.limited(LogLevel::notice, "camera back", cameras[i].description, p.service->clock.now());
     p.logged_problems[i] = problem;
   }
+}
+
+void App::log_exchanged_sides() {
+  Parts& p = *parts_;
+  if (!p.service->exchanged_sides->look(p.health.state(), Clock::now())) return;
+  p.log.line(
+      LogLevel::error,
+      "the left and right pictures are exchanged: points match only when they change places (exchange camera.left and "
+      "camera.right, or the cables)");
 }
 
 void App::report_health() {

@@ -38,6 +38,7 @@ class App {
   void look_at_progress();
   void feed_watchdog();
   void log_cameras();
+  void log_exchanged_sides();
   void log_state();
   [[nodiscard]] bool wait_for_signal();
 

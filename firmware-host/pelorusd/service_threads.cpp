@@ -88,8 +88,10 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
   workers.reset(new PipelineThreads{
       SideThread(prepared("klt", ThreadClass::fifo_middle, pinned ? processor_to_bind(1) : kAnyProcessor)),
       SideThread(prepared("surf", ThreadClass::fifo_low)), SideThread(prepared("refine", ThreadClass::fifo_behind))});
+  exchanged_sides.emplace(control, lost_pairs, *rectifier);
   const VisionParts parts{head->sync(), *rectifier,    desk.results,   control,
-                          clock,        preview.get(), recorder.get(), workers->workers(false)};
+                          clock,        preview.get(), recorder.get(), workers->workers(false),
+                          &lost_pairs};
   vision = std::make_unique<Vision>(
       parts, config.pipeline, config.capture, config.timing,
       prepared("vision", ThreadClass::fifo_middle, pinned ? processor_to_bind(0) : kAnyProcessor));

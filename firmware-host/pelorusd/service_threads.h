@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "firmware-host/pelorusd/exchanged_sides.h"
 #include "firmware-host/pelorusd/stereo_head.h"
 #include "firmware-host/runtime/log_sink.h"
 #include "firmware-host/runtime/privileges.h"
@@ -35,6 +36,8 @@ struct ServiceThreads {
   std::optional<Rectifier> rectifier;
   PublishDesk desk;
   VisionControl control;
+  Mailbox<SourcePair> lost_pairs;
+  std::optional<ExchangedSides> exchanged_sides;
   std::vector<Publisher*> publishers;
   std::unique_ptr<LcmPublisher> lcm;  // absent when off
   std::unique_ptr<CanPublisher> can;  // absent when off

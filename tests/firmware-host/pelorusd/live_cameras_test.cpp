@@ -71,12 +71,14 @@ class LiveCameras : public ::testing::Test {
     ASSERT_TRUE(cameras_[side]->running());
   }
   void start(int bus) {
+    begin(bus, kAddress[0], kAddress[1]);
+    ASSERT_TRUE(service_->wait_for_state("TRACKING")) << service_->log();
+  }
+  void begin(int bus, const std::string& left, const std::string& right) {
     const std::string source =
         "source:\n  kind: aravis\n  calibration: " + (dive().folder.path() / "rig.yaml").string() +
-        "\ncamera:\n  left: " + kAddress[0] + "\n  right: " + kAddress[1] +
-        "\n  rate_hz: 10\n  clock: ptp\n  tolerance_ms: 40\n";
+        "\ncamera:\n  left: " + left + "\n  right: " + right + "\n  rate_hz: 10\n  clock: ptp\n  tolerance_ms: 40\n";
     service_.emplace(source, "timing:\n  latency_ms: 400\n  deadline_tolerance_ms: 1000\n", bus);
-    ASSERT_TRUE(service_->wait_for_state("TRACKING")) << service_->log();
   }
   static std::int64_t now_us() {
     return std::chrono::duration_cast<std::chrono::microseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -129,6 +131,15 @@ TEST_F(LiveCameras, ALeftCameraThatIsLostIsAFaultWithinFivePairsAndItsReturnEnds
   EXPECT_FALSE(service_->odom.messages.back().pose_valid);
   switch_on(0);
   EXPECT_TRUE(service_->wait_for_state("TRACKING")) << service_->log();
+  finish();
+}
+
+TEST_F(LiveCameras, ExchangedOnesGiveNoPoseAndTheLogSaysWhy) {
+  begin(16, kAddress[1], kAddress[0]);
+  ASSERT_TRUE(service_->wait_for_state("LOST", "few points")) << service_->log();
+  const auto told = [&] { return service_->log().find("pictures are exchanged") != std::string::npos; };
+  EXPECT_TRUE(service_->odom.wait(told, 20)) << service_->log();
+  for (const vis_odom_t& m : service_->odom.messages) EXPECT_FALSE(m.pose_valid && m.state_text == "TRACKING") << m.seq;
   finish();
 }
 

@@ -1,0 +1,51 @@
+#include "firmware-host/pelorusd/exchanged_sides.h"
+
+#include "firmware-host/runtime/side_check.h"
+
+namespace pelorus {
+namespace {
+
+constexpr auto kPatience = std::chrono::seconds(1);  // of LOST before the first pair is asked for, and between two
+constexpr int kMostAsked = 10;
+constexpr int kPairsToBelieve = 2;
+constexpr int kCopies = 3;  // of a mailbox
+
+}  // namespace
+
+ExchangedSides::ExchangedSides(VisionControl& control, Mailbox<SourcePair>& lost_pairs, const Rectifier& rectifier)
+    : control_(control), lost_pairs_(lost_pairs), rectifier_(rectifier) {
+  const StereoRig& rig = rectifier.rig();
+  for (int i = 0; i < kCopies; ++i) {  // each round brings another of the copies to the writer
+    lost_pairs_.draft().left.resize(rig.width, rig.height);
+    lost_pairs_.draft().right.resize(rig.width, rig.height);
+    (void)lost_pairs_.post();
+    (void)lost_pairs_.fetch();
+  }
+}
+
+bool ExchangedSides::look(VisionState state, Clock::time_point now) {
+  if (state != VisionState::lost) {
+    lost_ = false;
+    return false;
+  }
+  if (!lost_) {
+    lost_ = true;
+    decided_ = false;
+    asked_ = exchanged_ = 0;
+    next_ask_ = now + kPatience;
+  }
+  if (decided_) return false;
+  if (const SourcePair* pair = lost_pairs_.fetch()) {
+    const Sides sides = sides_of(match_sides(*pair, rectifier_));
+    exchanged_ += sides == Sides::exchanged ? 1 : 0;
+    decided_ = sides == Sides::as_given || exchanged_ == kPairsToBelieve;
+    return exchanged_ == kPairsToBelieve;
+  }
+  if (now < next_ask_ || asked_ == kMostAsked) return false;
+  ++asked_;
+  next_ask_ = now + kPatience;
+  control_.lost_pair_wanted.store(true);
+  return false;
+}
+
+}  // namespace pelorus
