@@ -23,6 +23,7 @@ from lcm_log import events, results_and_reports, tracks
 CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped".split()
 MOST_ONE_SIDED = 0.02  # of the bodies: found or given up a pair earlier
 TURNED_MORE = 2  # a body has few points and is small: its orientation is worth less than the vehicle's
+MOST_OF_ORIGIN_M = 0.5  # between the origins of one body in two runs, less than bodies are apart
 HEALTH_LAG_US = 400_000  # a loss is in the counters so long after its exposure
 
 
@@ -161,27 +162,70 @@ def product(a, b):
             w * r + x * q - y * p + z * v)
 
 
-def check_bodies(log, results_folder, tolerance_m, tolerance_deg):
-    """Bodies by their number: the same in both, and in the same place."""
+def inverse(quaternion):
+    w, x, y, z = quaternion
+    return (w, -x, -y, -z)
+
+
+def turned(quaternion, vector):
+    return product(product(quaternion, (0, *vector)), inverse(quaternion))[1:]
+
+
+class SameBody:
+    """A body of the live run and the stepped one's that is it. Where a body's own origin lies follows from the points that it
+    was found by, and these may differ by a few; what is compared is the motion since both have it."""
+
+    def __init__(self, ident, live, stepped):
+        self.ident = ident
+        back = inverse(stepped["quaternion"])
+        self.offset = turned(back, [a - b for a, b in zip(live["position"], stepped["position"])])
+        self.turn = product(back, live["quaternion"])
+
+    def expected(self, stepped):
+        offset = turned(stepped["quaternion"], self.offset)
+        return [a + b for a, b in zip(stepped["position"], offset)], product(stepped["quaternion"], self.turn)
+
+
+def same_body(live, others, taken):
+    """The nearest that is no other's; None when all are farther than bodies are apart."""
+    near = [(math.dist(live["position"], o["position"]), ident, o) for ident, o in others.items() if ident not in taken]
+    distance, ident, stepped = min(near, default=(math.inf, None, None), key=lambda n: n[0])
+    return SameBody(ident, live, stepped) if distance < MOST_OF_ORIGIN_M else None
+
+
+def stepped_bodies(results_folder):
+    """By time and number, in the axes of the live ones."""
+    found = {}
     with open(os.path.join(results_folder, "objects.csv"), encoding="ascii") as rows:
-        stepped = {}
         for row in csv.DictReader(rows):
-            stepped.setdefault(int(row["timestamp_ns"]) // 1000, {})[int(row["object_id"])] = row
-    differences, one_sided, total = Differences("bodies"), 0, 0
+            value = {name: float(text) for name, text in row.items() if name[:2] in ("p_", "q_")}
+            position, _ = in_body((value["p_x"], value["p_y"], value["p_z"]), (1, 0, 0, 0))
+            quaternion = product(LOOKING_AHEAD, (value["q_w"], value["q_x"], value["q_y"], value["q_z"]))
+            found.setdefault(int(row["timestamp_ns"]) // 1000, {})[int(row["object_id"])] = {
+                "position": position, "quaternion": quaternion}
+    return found
+
+
+def check_bodies(log, results_folder, tolerance_m, tolerance_deg):
+    """The same bodies in both, moving the same way."""
+    stepped = stepped_bodies(results_folder)
+    differences, one_sided, total, same = Differences("bodies"), 0, 0, {}
     for _, channel, data in events(log):
         if not channel.endswith(".VIS_TRACKS"):
             continue
         live = tracks(data)
-        other = stepped.get(live["utime"], {})
-        total += len(live["bodies"].keys() | other.keys())
-        one_sided += len(live["bodies"].keys() ^ other.keys())
-        for ident in live["bodies"].keys() & other.keys():
-            row = {name: float(value) for name, value in other[ident].items() if name[:2] in ("p_", "q_")}
-            position, _ = in_body((row["p_x"], row["p_y"], row["p_z"]), (1, 0, 0, 0))
-            quaternion = product(LOOKING_AHEAD, (row["q_w"], row["q_x"], row["q_y"], row["q_z"]))
-            differences.add(position, quaternion, live["bodies"][ident])
-    print(f"bodies of the same exposure and number compared: {len(differences.apart_m)}; in one of the two only: "
-          f"{one_sided} of {total}")
+        others = stepped.get(live["utime"], {})
+        for ident, body in live["bodies"].items():
+            if ident not in same and (found := same_body(body, others, {s.ident for s in same.values()})):
+                same[ident] = found
+        both = {ident: same[ident] for ident in live["bodies"].keys() & same.keys() if same[ident].ident in others}
+        total += len(live["bodies"]) + len(others) - len(both)
+        one_sided += len(live["bodies"]) + len(others) - 2 * len(both)
+        for ident, partner in both.items():
+            differences.add(*partner.expected(others[partner.ident]), live["bodies"][ident])
+    renumbered = sum(ident != partner.ident for ident, partner in same.items())
+    print(f"bodies of the same exposure compared: {len(differences.apart_m)}; in one of the two only: {one_sided} of {total}; "
+          f"of another number: {renumbered} of {len(same)}")
     if not differences.apart_m:
         print("no body in both")
         return True
