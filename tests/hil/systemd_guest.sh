@@ -112,7 +112,9 @@ journalctl -u pelorusd --no-pager -o cat | grep -q '^vision stands still$' || wr
 
 # By the journal of systemd: starting systemctl alone may take a second here, and a unit that nobody needs any more is
 # forgotten with its result.
-stamp_ms() { journalctl -u pelorusd --no-pager -o short-unix | grep "$1" | tail -1 | awk '{printf "%d", 1000 * $1}'; }
+stamp_ms() {
+  journalctl -u pelorusd --no-pager -o short-unix | grep "$1" | sed -n '$s/^\([0-9]*\)\.\([0-9]\{3\}\).*/\1\2/p'
+}
 systemctl stop pelorusd
 journalctl --sync
 asked=$(stamp_ms 'Stopping pelorusd')
