@@ -5,6 +5,7 @@
 #include "firmware-host/pelorusd/mounting.h"
 #include "firmware-host/runtime/calibration_writer.h"
 #include "firmware-host/runtime/process_setup.h"
+#include "firmware-host/runtime/reserved_memory.h"
 #include "firmware-host/runtime/settings_hash.h"
 
 namespace pelorus {
@@ -95,6 +96,9 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
   vision = std::make_unique<Vision>(
       parts, config.pipeline, config.capture, config.timing,
       prepared("vision", ThreadClass::fifo_middle, pinned ? processor_to_bind(0) : kAnyProcessor));
+  if (config.process.lock_memory) {
+    if (const std::string why = populate_reserved_memory(); !why.empty()) privileges.note_memory_lock(why);
+  }
   // A device's thread copies; that of a recording decodes or renders, which must not keep others waiting.
   head->start(prepared("capture", head->is_live() ? ThreadClass::fifo_high : ThreadClass::normal));
   if (config.lcm.enabled && config.lcm.commands) {

@@ -66,6 +66,12 @@ std::string allocations_text(const LatencyRun& run) {
   return allocations_are_counted() ? std::to_string(run.allocations) : "not counted in this build";
 }
 
+std::string faults_by_thread(const LatencyRun& run) {
+  std::string text;
+  for (const ThreadCost& thread : run.threads) text += " " + thread.name + " " + std::to_string(thread.page_faults);
+  return text;
+}
+
 }  // namespace
 
 double Distribution::at(double share) const {
@@ -115,8 +121,8 @@ std::string latency_table(const LatencyContext& context, const LatencyRun& run) 
       static_cast<unsigned long long>(run.pairs_late));
   add(text, "results without pose   %lld, degraded %lld\n", c.without_pose, c.degraded);
   add(text, "heap allocations       %s\n", allocations_text(run).c_str());
-  add(text, "page faults            %llu minor, %llu major\n", static_cast<unsigned long long>(run.minor_faults),
-      static_cast<unsigned long long>(run.major_faults));
+  add(text, "page faults            %llu minor, %llu major:%s\n", static_cast<unsigned long long>(run.minor_faults),
+      static_cast<unsigned long long>(run.major_faults), faults_by_thread(run).c_str());
   add(text, "resident memory        %.0f MB at first, %.0f MB in the end, %.0f MB at most (held pictures left out)\n",
       run.rss_start_mb, run.rss_end_mb, run.rss_peak_mb);
   add(text, "processor time         %.2f ms per result over all threads:", cpu_ms_per_step(run));
@@ -143,7 +149,11 @@ std::string latency_json(const LatencyContext& context, const LatencyRun& run) {
     spread.raw(d.name, one.str());
   }
   JsonObject threads;
-  for (const ThreadCost& thread : run.threads) threads.number(thread.name, thread.cpu_ms);
+  JsonObject faults;
+  for (const ThreadCost& thread : run.threads) {
+    threads.number(thread.name, thread.cpu_ms);
+    faults.integer(thread.name, static_cast<long long>(thread.page_faults));
+  }
   std::vector<std::string> refused;
   for (const std::string& refusal : run.refused) refused.push_back(JsonObject().text("refused", refusal).str());
   JsonObject json;
@@ -168,6 +178,7 @@ std::string latency_json(const LatencyContext& context, const LatencyRun& run) {
       .integer("results_without_pose", c.without_pose)
       .integer("page_faults_minor", static_cast<long long>(run.minor_faults))
       .integer("page_faults_major", static_cast<long long>(run.major_faults))
+      .raw("page_faults_by_thread", faults.str())
       .number("rss_start_mb", run.rss_start_mb)
       .number("rss_end_mb", run.rss_end_mb)
       .number("rss_peak_mb", run.rss_peak_mb)

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <map>
 #include <thread>
 
@@ -15,6 +16,7 @@
 #include "firmware-host/pelorus/bench/allocation_counter.h"
 #include "firmware-host/runtime/privileges.h"
 #include "firmware-host/runtime/process_setup.h"
+#include "firmware-host/runtime/reserved_memory.h"
 #include "services/capture.h"
 #include "services/publish_thread.h"
 #include "services/side_thread.h"
@@ -61,21 +63,38 @@ double resident_mb(const char* field) {
   return 0;
 }
 
-// CPU time of each thread by its name, ms.
-std::map<std::string, double> thread_cpu_ms() {
-  std::map<std::string, double> cost;
+// Minor and major page faults of a thread since its start (proc(5): fields 10 and 12 of its stat).
+std::uint64_t page_faults(const std::filesystem::path& task) {
+  std::ifstream file(task / "stat");
+  file.ignore(std::numeric_limits<std::streamsize>::max(), ')');  // the name may hold anything before it
+  std::string skipped;
+  for (int field = 3; field < 10; ++field) file >> skipped;
+  std::uint64_t minor = 0;
+  std::uint64_t minor_of_children = 0;
+  std::uint64_t major = 0;
+  file >> minor >> minor_of_children >> major;
+  return minor + major;
+}
+
+// What each thread cost so far, by its name.
+std::map<std::string, ThreadCost> thread_costs() {
+  std::map<std::string, ThreadCost> costs;
   for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
     std::ifstream name_file(task.path() / "comm");
     std::ifstream time_file(task.path() / "schedstat");
     std::string name;
     double ns = 0;
-    if (std::getline(name_file, name) && time_file >> ns) cost[name] += ns * 1e-6;
+    if (!std::getline(name_file, name) || !(time_file >> ns)) continue;
+    ThreadCost& cost = costs[name];
+    cost.name = name;
+    cost.cpu_ms += ns * 1e-6;
+    cost.page_faults += page_faults(task.path());
   }
-  return cost;
+  return costs;
 }
 
 struct Snapshot {
-  std::map<std::string, double> threads = thread_cpu_ms();
+  std::map<std::string, ThreadCost> threads = thread_costs();
   rusage usage = [] {
     rusage u{};
     ::getrusage(RUSAGE_SELF, &u);
@@ -90,9 +109,13 @@ void tell_difference(const Snapshot& before, const Snapshot& after, LatencyRun& 
   run.allocations = after.allocations - before.allocations;
   run.minor_faults = static_cast<std::uint64_t>(after.usage.ru_minflt - before.usage.ru_minflt);
   run.major_faults = static_cast<std::uint64_t>(after.usage.ru_majflt - before.usage.ru_majflt);
-  for (const auto& [name, ms] : after.threads) {
-    const auto earlier = before.threads.find(name);
-    run.threads.push_back({name, ms - (earlier != before.threads.end() ? earlier->second : 0)});
+  for (const auto& [name, total] : after.threads) {
+    ThreadCost cost = total;
+    if (const auto earlier = before.threads.find(name); earlier != before.threads.end()) {
+      cost.cpu_ms -= earlier->second.cpu_ms;
+      cost.page_faults -= earlier->second.page_faults;
+    }
+    run.threads.push_back(cost);
   }
 }
 
@@ -185,6 +208,9 @@ Result<LatencyRun> run_latency(std::shared_ptr<const PreloadedPairs> pairs, cons
   }
   Probe probe(static_cast<std::size_t>(options.seconds * options.rate_hz * 1.2) + 100);
   auto chain = std::make_unique<Chain>(pairs, options, rectifier.value(), realtime, probe, privileges);
+  if (options.config.process.lock_memory) {
+    if (const std::string why = populate_reserved_memory(); !why.empty()) privileges.note_memory_lock(why);
+  }
   run.interrupted = !let_run(*chain, options.warm_up_s, options, {});
   run.rss_start_mb = resident_mb("VmRSS:") - held_mb;
   const std::uint64_t superseded = chain->superseded();

@@ -38,6 +38,7 @@ struct ReleasedStep {
 struct ThreadCost {
   std::string name;
   double cpu_ms = 0;  // over the time counted
+  std::uint64_t page_faults = 0;
 };
 
 struct LatencyRun {

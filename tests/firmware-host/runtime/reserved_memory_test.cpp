@@ -1,0 +1,32 @@
+#include "firmware-host/runtime/reserved_memory.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <memory>
+
+namespace pelorus {
+namespace {
+
+constexpr std::size_t kPage = 4096;
+constexpr std::size_t kPages = 1024;
+
+long faults_of_writing(char* memory) {
+  rusage before{};
+  rusage after{};
+  ::getrusage(RUSAGE_THREAD, &before);
+  for (std::size_t page = 0; page < kPages; ++page) static_cast<volatile char*>(memory)[page * kPage] = 1;
+  ::getrusage(RUSAGE_THREAD, &after);
+  return after.ru_minflt - before.ru_minflt;
+}
+
+TEST(ReservedMemory, WritingWhatWasReservedFaultsNoMore) {
+  const std::unique_ptr<char[]> fresh(new char[kPages * kPage]);
+  ASSERT_GT(faults_of_writing(fresh.get()), 0);  // or nothing is shown
+  const std::unique_ptr<char[]> reserved(new char[kPages * kPage]);
+  ASSERT_EQ(populate_reserved_memory(), "");
+  EXPECT_EQ(faults_of_writing(reserved.get()), 0);
+}
+
+}  // namespace
+}  // namespace pelorus
