@@ -15,6 +15,24 @@
 
 namespace pelorus {
 
+// One row of an integral image: `out` = `above` + running sums of the pixels. Column x of both lies at
+// (x mod 2^phase_shift) * phase_stride + x / 2^phase_shift; column 0 of both is zero and stays.
+struct IntegralRow {
+  const std::uint8_t* pixels = nullptr;
+  int width = 0;
+  int phase_shift = 0;  // 0, 1 or 2
+  std::ptrdiff_t phase_stride = 0;
+  const std::uint32_t* above = nullptr;
+  std::uint32_t* out = nullptr;
+};
+void integral_row(const IntegralRow& row);
+
+namespace reference {
+void integral_row(const IntegralRow& row);
+// Columns first + 1 .. width, with `sum` that of the pixels before.
+void finish_integral_row(const IntegralRow& row, int first, std::uint32_t sum);
+}  // namespace reference
+
 class IntegralImage {
  public:
   // Entries past the end of each phase that may be read (not used) by vector code.

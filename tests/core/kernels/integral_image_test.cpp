@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/core/kernels/each_target.h"
 #include "tests/core/kernels/random_image.h"
 
 namespace pelorus {
@@ -22,6 +23,26 @@ TEST(IntegralImage, EveryEntryIsTheSumAboveAndLeftForEveryPhaseLayout) {
           ASSERT_EQ(integral.at(x, y), row_sum) << phases << " phases, width " << width << ": " << x << ' ' << y;
         }
       }
+    }
+  }
+}
+
+TEST(IntegralImage, EveryInstructionSetEqualsTheReferenceBitByBit) {
+  constexpr std::ptrdiff_t kStride = 80;
+  std::vector<std::uint32_t> above(4 * kStride);
+  for (std::size_t i = 0; i < above.size(); ++i) above[i] = static_cast<std::uint32_t>(i) * 0x9E3779B9U;  // wraps too
+  for (const int phase_shift : {0, 1, 2}) {
+    for (int width = 1; width <= 70; ++width) {
+      const Image image = test::random_image(width, 1, static_cast<unsigned>(width));
+      std::vector<std::uint32_t> expected(above.size(), 7);
+      IntegralRow row{image.row(0), width, phase_shift, kStride, above.data(), expected.data()};
+      reference::integral_row(row);
+      for_each_target([&] {
+        std::vector<std::uint32_t> got(above.size(), 7);
+        row.out = got.data();
+        integral_row(row);
+        ASSERT_EQ(got, expected) << (1 << phase_shift) << " phases, width " << width;
+      });
     }
   }
 }
