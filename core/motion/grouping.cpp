@@ -10,6 +10,7 @@ namespace pelorus {
 namespace {
 
 constexpr std::size_t kMaxNeighbours = 64;
+constexpr int kMostRefused = 8;        // motions that lose their points when refined: each costs an adjustment
 constexpr int kSampledProposals = 24;  // as many as a typical number of seeds, for a fair ablation
 
 const PointPair& at(PointPairs pairs, PointIndex i) { return pairs[static_cast<std::size_t>(i)]; }
@@ -160,24 +161,33 @@ void Grouping::score(const StereoRig& rig, const Rigid3& motion, std::vector<flo
 // one already taken find nothing left: that is the consolidation of groups with equal motions.
 void Grouping::claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates) {
   for (std::size_t m = 0; m < motions_.size(); ++m) score(rig, motions_[m], motion_chi2_[m]);
-  while (static_cast<int>(partition_.groups.size()) < config_.max_groups) {
+  for (int refused = 0; refused < kMostRefused && static_cast<int>(partition_.groups.size()) < config_.max_groups;) {
     const std::size_t best = most_explaining();
     if (best == motions_.size()) break;
-    if (!claim(rig, pairs, candidates, best)) motion_chi2_[best].clear();
+    if (claim(rig, pairs, candidates, best)) continue;
+    motion_chi2_[best].clear();
+    ++refused;
   }
   collect_members(candidates);
 }
 
-// Of what is left; motions_.size() when none explains any. Those without chi-squares are spent.
-std::size_t Grouping::most_explaining() const {
+// Of what is left; motions_.size() when none explains enough for a group. What is left only shrinks: a motion that
+// explains too little now is spent for good, and its chi-squares are cleared.
+std::size_t Grouping::most_explaining() {
   std::size_t best = motions_.size();
   double best_score = 0;
   for (std::size_t m = 0; m < motions_.size(); ++m) {
     double sum = 0;
+    int explained = 0;
     for (std::size_t c = 0; c < motion_chi2_[m].size(); ++c) {
-      if (label_[c] < 0) sum += std::max(0.0, config_.gate_chi2 - static_cast<double>(motion_chi2_[m][c]));
+      const double gain = config_.gate_chi2 - static_cast<double>(motion_chi2_[m][c]);
+      if (label_[c] >= 0 || !(gain > 0)) continue;
+      sum += gain;
+      ++explained;
     }
-    if (sum > best_score) {
+    if (explained < config_.min_group_points) {
+      motion_chi2_[m].clear();
+    } else if (sum > best_score) {
       best_score = sum;
       best = m;
     }
@@ -185,7 +195,7 @@ std::size_t Grouping::most_explaining() const {
   return best;
 }
 
-// False, and nothing claimed, when the motion explains too few points as proposed or as refined on them.
+// False, and nothing claimed, when the motion as refined on what it explains explains too little.
 bool Grouping::claim(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
                      std::size_t proposal) {
   Group group = empty_group();
@@ -195,13 +205,11 @@ bool Grouping::claim(const StereoRig& rig, PointPairs pairs, std::span<const Poi
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (explained(motion_chi2_[proposal], c)) group.members.push_back(candidates[c]);
   }
-  std::ptrdiff_t claimed = 0;
-  if (static_cast<int>(group.members.size()) >= config_.min_group_points) {
-    const MotionFit fit = two_frame_ba_.run(rig, pairs, group.members, motions_[proposal]);
-    group.H_curr_prev = fit.outcome == StageOutcome::degenerate ? motions_[proposal] : fit.H_curr_prev;
-    score(rig, group.H_curr_prev, refined_chi2_);
-    for (std::size_t c = 0; c < candidates.size(); ++c) claimed += explained(refined_chi2_, c);
-  }
+  const MotionFit fit = two_frame_ba_.run(rig, pairs, group.members, motions_[proposal]);
+  group.H_curr_prev = fit.outcome == StageOutcome::degenerate ? motions_[proposal] : fit.H_curr_prev;
+  score(rig, group.H_curr_prev, refined_chi2_);
+  int claimed = 0;
+  for (std::size_t c = 0; c < candidates.size(); ++c) claimed += explained(refined_chi2_, c);
   if (claimed < config_.min_group_points) {
     spare_.push_back(std::move(group.members));
     return false;

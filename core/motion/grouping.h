@@ -3,7 +3,7 @@
 // points proposes groups; each proposal gets a motion; motions are kept while they explain points that no better
 // one explains (which consolidates proposals that agree); points are then re-assigned to the motion with the least
 // stereo residual, neighbours preferring one label, outliers said to be outliers.
-// Thread-bound; deterministic; bounded by the caps: O(seeds * points + motions * points).
+// Thread-bound; deterministic; bounded by the caps: O(seeds * points + groups * motions * points).
 
 #include "core/motion/motion_proposal.h"
 #include "core/motion/rigidity.h"
@@ -50,7 +50,7 @@ class Grouping {
                               std::size_t known_motions);
   void score(const StereoRig& rig, const Rigid3& motion, std::vector<float>& chi2);
   void claim_groups(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates);
-  [[nodiscard]] std::size_t most_explaining() const;
+  [[nodiscard]] std::size_t most_explaining();
   [[nodiscard]] bool claim(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates,
                            std::size_t proposal);
   void reassign(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> candidates);

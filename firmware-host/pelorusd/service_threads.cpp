@@ -14,7 +14,7 @@ Result<std::unique_ptr<ServiceThreads>> ServiceThreads::start(const ServiceConfi
   std::unique_ptr<ServiceThreads> threads(new ServiceThreads(config));
   const Result<Rigid3> T_body_cam = threads->prepare(log);
   if (!T_body_cam) return T_body_cam.error();
-  threads->build(T_body_cam.value(), threads->ask_the_system(log));
+  threads->build(T_body_cam.value(), threads->ask_the_system(log), log);
   return threads;
 }
 
@@ -54,7 +54,15 @@ bool ServiceThreads::ask_the_system(LogSink& log) {
   return why.empty();
 }
 
-void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
+// All but the cameras is there, and no picture comes yet.
+void ServiceThreads::populate_memory(LogSink& log) {
+  const std::string why = populate_reserved_memory();
+  privileges.note_reserved_memory(why);
+  if (!why.empty())
+    log.line(LogLevel::warning, "reserved memory not populated, its pages come as they are used: " + why);
+}
+
+void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime, LogSink& log) {
   const auto prepared = [this, realtime](const char* name, ThreadClass wanted, int processor = kAnyProcessor) {
     const bool real = wanted == ThreadClass::background || realtime;
     return [=, this] {
@@ -96,9 +104,7 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime) {
   vision = std::make_unique<Vision>(
       parts, config.pipeline, config.capture, config.timing,
       prepared("vision", ThreadClass::fifo_middle, pinned ? processor_to_bind(0) : kAnyProcessor));
-  if (config.process.lock_memory) {
-    if (const std::string why = populate_reserved_memory(); !why.empty()) privileges.note_memory_lock(why);
-  }
+  if (config.process.lock_memory) populate_memory(log);
   // A device's thread copies; that of a recording decodes or renders, which must not keep others waiting.
   head->start(prepared("capture", head->is_live() ? ThreadClass::fifo_high : ThreadClass::normal));
   if (config.lcm.enabled && config.lcm.commands) {

@@ -52,7 +52,8 @@ struct ServiceThreads {
   explicit ServiceThreads(const ServiceConfig& c) : config(c) {}
   [[nodiscard]] Result<Rigid3> prepare(LogSink& log);
   [[nodiscard]] bool ask_the_system(LogSink& log);
-  void build(const Rigid3& T_body_cam, bool realtime);
+  void populate_memory(LogSink& log);
+  void build(const Rigid3& T_body_cam, bool realtime, LogSink& log);
   [[nodiscard]] CommandAnswer obey(const std::string& command);
 };
 

@@ -14,6 +14,7 @@ class PrivilegeLedger {
   // `refusal`: empty when granted. What is never told was not asked for.
   void note_realtime(const std::string& refusal);
   void note_memory_lock(const std::string& refusal);
+  void note_reserved_memory(const std::string& refusal);  // populate_reserved_memory()
   // The outcome of set_thread(); `pinned`: a processor of its own was asked for.
   void note_thread(const std::string& name, bool pinned, const std::string& refusal);
 
@@ -30,6 +31,7 @@ class PrivilegeLedger {
   mutable std::mutex mutex_;
   std::optional<std::string> realtime_;
   std::optional<std::string> memory_lock_;
+  std::string reserved_memory_;  // why not populated
   int pinned_ = 0;
   std::vector<ThreadRefusal> threads_;
 };

@@ -208,9 +208,7 @@ Result<LatencyRun> run_latency(std::shared_ptr<const PreloadedPairs> pairs, cons
   }
   Probe probe(static_cast<std::size_t>(options.seconds * options.rate_hz * 1.2) + 100);
   auto chain = std::make_unique<Chain>(pairs, options, rectifier.value(), realtime, probe, privileges);
-  if (options.config.process.lock_memory) {
-    if (const std::string why = populate_reserved_memory(); !why.empty()) privileges.note_memory_lock(why);
-  }
+  if (options.config.process.lock_memory) privileges.note_reserved_memory(populate_reserved_memory());
   run.interrupted = !let_run(*chain, options.warm_up_s, options, {});
   run.rss_start_mb = resident_mb("VmRSS:") - held_mb;
   const std::uint64_t superseded = chain->superseded();

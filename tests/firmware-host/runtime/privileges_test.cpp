@@ -32,15 +32,15 @@ TEST(Privileges, EachRefusalIsNamedWithItsReason) {
   PrivilegeLedger ledger;
   ledger.note_realtime("Operation not permitted");
   ledger.note_memory_lock("the limit is 64 kB");
+  ledger.note_reserved_memory("Invalid argument");
   ledger.note_thread("vision", true, "");
   ledger.note_thread("klt", true, "Invalid argument");
-  EXPECT_EQ(
-      ledger.text(),
-      "no real time: Operation not permitted, memory not locked: the limit is 64 kB, 1 threads pinned, thread klt "
-      "refused: Invalid argument");
-  const std::vector<std::string> expected{"memory lock: the limit is 64 kB",
-                                          "real-time scheduling: Operation not permitted",
-                                          "class or processor of thread klt: Invalid argument"};
+  EXPECT_EQ(ledger.text(),
+            "no real time: Operation not permitted, memory not locked: the limit is 64 kB, 1 threads pinned, reserved "
+            "memory not populated: Invalid argument, thread klt refused: Invalid argument");
+  const std::vector<std::string> expected{
+      "memory lock: the limit is 64 kB", "reserved memory populated: Invalid argument",
+      "real-time scheduling: Operation not permitted", "class or processor of thread klt: Invalid argument"};
   EXPECT_EQ(ledger.refused(), expected);
 }
 

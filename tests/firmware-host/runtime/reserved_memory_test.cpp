@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cerrno>
+#include <cstring>
 #include <memory>
+#include <string>
 
 namespace pelorus {
 namespace {
@@ -24,7 +27,9 @@ TEST(ReservedMemory, WritingWhatWasReservedFaultsNoMore) {
   const std::unique_ptr<char[]> fresh(new char[kPages * kPage]);
   ASSERT_GT(faults_of_writing(fresh.get()), 0);  // or nothing is shown
   const std::unique_ptr<char[]> reserved(new char[kPages * kPage]);
-  ASSERT_EQ(populate_reserved_memory(), "");
+  const std::string refusal = populate_reserved_memory();
+  if (refusal == std::strerror(EINVAL)) GTEST_SKIP() << "this kernel cannot populate memory (Linux 5.14)";
+  ASSERT_EQ(refusal, "");
   EXPECT_EQ(faults_of_writing(reserved.get()), 0);
 }
 
