@@ -1,5 +1,6 @@
 #include "firmware-host/pelorus/eval/ablate_table.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -39,9 +40,8 @@ std::string cell(const char* pattern, double value, int width) {
     text[0] = '-';
   }
   std::string padded = text.data();
-  if (padded.size() < static_cast<std::size_t>(width)) {
-    padded.insert(0, static_cast<std::size_t>(width) - padded.size(), ' ');
-  }
+  const std::size_t wanted = std::max(static_cast<std::size_t>(width), padded.size() + 1);  // columns never touch
+  padded.insert(0, wanted - padded.size(), ' ');
   return padded;
 }
 
