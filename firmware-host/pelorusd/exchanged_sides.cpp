@@ -1,12 +1,15 @@
 #include "firmware-host/pelorusd/exchanged_sides.h"
 
+#include <algorithm>
+
 #include "firmware-host/runtime/side_check.h"
 
 namespace pelorus {
 namespace {
 
-constexpr auto kPatience = std::chrono::seconds(1);  // of LOST before the first pair is asked for, and between two
-constexpr int kMostAsked = 10;
+constexpr auto kPatience = std::chrono::seconds(1);  // of LOST before the first pair is asked for
+// Between two pairs, in the end: a check costs the main thread 0.1 s, and darkness lasts for hours.
+constexpr auto kLongestPause = std::chrono::seconds(60);
 constexpr int kPairsToBelieve = 2;
 constexpr int kCopies = 3;  // of a mailbox
 
@@ -31,19 +34,26 @@ bool ExchangedSides::look(VisionState state, Clock::time_point now) {
   if (!lost_) {
     lost_ = true;
     decided_ = false;
-    asked_ = exchanged_ = 0;
+    exchanged_ = 0;
     next_ask_ = now + kPatience;
+    pause_ = kPatience;
+    // What an earlier time was shown, or asked for in vain, says nothing of this one.
+    control_.lost_pair_wanted.store(false);
+    (void)lost_pairs_.fetch();
   }
   if (decided_) return false;
   if (const SourcePair* pair = lost_pairs_.fetch()) {
     const Sides sides = sides_of(match_sides(*pair, rectifier_));
-    exchanged_ += sides == Sides::exchanged ? 1 : 0;
+    if (sides == Sides::exchanged) {
+      ++exchanged_;
+      next_ask_ = now + kPatience;  // the pair that confirms it is not waited for in the pauses of darkness
+    }
     decided_ = sides == Sides::as_given || exchanged_ == kPairsToBelieve;
     return exchanged_ == kPairsToBelieve;
   }
-  if (now < next_ask_ || asked_ == kMostAsked) return false;
-  ++asked_;
-  next_ask_ = now + kPatience;
+  if (now < next_ask_) return false;
+  next_ask_ = now + pause_;
+  pause_ = std::min(2 * pause_, kLongestPause);
   control_.lost_pair_wanted.store(true);
   return false;
 }

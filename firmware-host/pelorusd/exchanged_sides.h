@@ -2,7 +2,8 @@
 // ExchangedSides: why nothing is found in good pictures. Live cameras whose left and right are exchanged (names,
 // cables, addresses) give no pose, only LOST; here pairs that ended so are asked for and matched both ways
 // (runtime/side_check.h). Recorded pictures are checked before the start. Thread-bound to the main thread; a check
-// takes some 0.1 s, and happens only while LOST lasts, a few times.
+// takes some 0.1 s, and happens only while LOST lasts and nothing is known: after 1, 2, 4 s and so on, in the end each
+// 60 s.
 
 #include <chrono>
 
@@ -27,9 +28,9 @@ class ExchangedSides {
   const Rectifier& rectifier_;
   bool lost_ = false;
   bool decided_ = false;
-  int asked_ = 0;
   int exchanged_ = 0;
   Clock::time_point next_ask_;
+  std::chrono::seconds pause_{};  // after the next pair that is asked for
 };
 
 }  // namespace pelorus
