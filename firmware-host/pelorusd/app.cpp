@@ -22,6 +22,9 @@ constexpr auto kTick = std::chrono::milliseconds(50);
 constexpr auto kHealthPeriod = std::chrono::seconds(1);
 constexpr auto kLeastBetweenChanges = std::chrono::milliseconds(100);
 constexpr auto kLongestStandstill = std::chrono::milliseconds(2000);
+// Of the refinement, the last to be given a processor: where there are too few it is late, and results go on without
+// it. So long without one is no overload any more, but a hang.
+constexpr auto kLongestRefinement = std::chrono::seconds(30);
 
 sigset_t handled_signals() {
   sigset_t signals;
@@ -250,7 +253,7 @@ void App::look_at_progress() {
   }
   // Vision does not wait for the refinement of the ego motion: without this its hang would show in no message.
   const SideThread& refine = p.service->workers->refine;
-  p.progress.look("refinement", refine.finished(), refine.done(), now);
+  p.progress.look("refinement", refine.finished(), refine.done(), now, kLongestRefinement);
 }
 
 // Fed only while every part moves: a service that hangs is better killed and started anew.

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +15,10 @@ class ProgressWatch {
   using Clock = std::chrono::steady_clock;
   explicit ProgressWatch(std::chrono::milliseconds longest_standstill) : longest_(longest_standstill) {}
 
-  // The present count of a part; `excused`: it may stand still now (a camera that is being searched for).
-  void look(const std::string& part, std::uint64_t count, bool excused, Clock::time_point now);
+  // The present count of a part; `excused`: it may stand still now (a camera that is being searched for). A part may
+  // have a limit of its own.
+  void look(const std::string& part, std::uint64_t count, bool excused, Clock::time_point now,
+            std::optional<std::chrono::milliseconds> longest_standstill = {});
   // The first part that stands still for too long; empty when all move.
   [[nodiscard]] std::string stuck(Clock::time_point now) const;
 
@@ -24,6 +27,7 @@ class ProgressWatch {
     std::string name;
     std::uint64_t count = 0;
     Clock::time_point moved;
+    std::chrono::milliseconds longest;
   };
   std::chrono::milliseconds longest_;
   std::vector<Part> parts_;

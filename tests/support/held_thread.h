@@ -5,6 +5,7 @@
 #include <sys/ptrace.h>
 #include <sys/wait.h>
 
+#include <cerrno>
 #include <filesystem>
 #include <string>
 
@@ -24,7 +25,10 @@ inline pid_t thread_named(pid_t process, const std::string& name) {
 class HeldThread {
  public:
   explicit HeldThread(pid_t thread) : thread_(thread) {
-    if (thread_ <= 0 || ::ptrace(PTRACE_SEIZE, thread_, nullptr, nullptr) != 0) return;
+    if (::ptrace(PTRACE_SEIZE, thread_, nullptr, nullptr) != 0) {
+      error_ = errno;
+      return;
+    }
     (void)::ptrace(PTRACE_INTERRUPT, thread_, nullptr, nullptr);
     int status = 0;
     held_ = ::waitpid(thread_, &status, __WALL) == thread_ && WIFSTOPPED(status);
@@ -33,8 +37,10 @@ class HeldThread {
   HeldThread(const HeldThread&) = delete;
   HeldThread& operator=(const HeldThread&) = delete;
 
-  // False: no such thread, or it may not be traced.
+  // False: no such thread, or it is refused().
   [[nodiscard]] bool held() const { return held_; }
+  // This machine lets nobody trace it.
+  [[nodiscard]] bool refused() const { return error_ == EPERM; }
   void release() {
     if (held_) (void)::ptrace(PTRACE_DETACH, thread_, nullptr, nullptr);
     held_ = false;
@@ -43,6 +49,7 @@ class HeldThread {
  private:
   pid_t thread_;
   bool held_ = false;
+  int error_ = 0;
 };
 
 }  // namespace pelorus::test

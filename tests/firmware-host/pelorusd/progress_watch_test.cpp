@@ -28,5 +28,16 @@ TEST(ProgressWatch, ASearchedCameraMayStandStillAndMovesAgainWhenFound) {
   EXPECT_EQ(watch.stuck(start + milliseconds(4200)), "");
 }
 
+TEST(ProgressWatch, APartWithALimitOfItsOwnIsGivenThatTime) {
+  ProgressWatch watch(milliseconds(1000));
+  const ProgressWatch::Clock::time_point start{};
+  for (int i = 0; i <= 301; ++i) {
+    const auto now = start + milliseconds(100 * i);
+    watch.look("vision", static_cast<std::uint64_t>(i), false, now);
+    watch.look("refinement", 7, false, now, milliseconds(30'000));
+    EXPECT_EQ(watch.stuck(now), i <= 300 ? "" : "refinement") << i;
+  }
+}
+
 }  // namespace
 }  // namespace pelorus
