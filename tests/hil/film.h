@@ -1,7 +1,6 @@
 #pragma once
 // Recorded pairs as software cameras show them, and what each of them showed when. Thread-bound.
 
-#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <string>

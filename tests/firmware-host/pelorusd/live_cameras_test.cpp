@@ -139,7 +139,10 @@ TEST_F(LiveCameras, ExchangedOnesGiveNoPoseAndTheLogSaysWhy) {
   ASSERT_TRUE(service_->wait_for_state("LOST", "few points")) << service_->log();
   const auto told = [&] { return service_->log().find("pictures are exchanged") != std::string::npos; };
   EXPECT_TRUE(service_->odom.wait(told, 20)) << service_->log();
-  for (const vis_odom_t& m : service_->odom.messages) EXPECT_FALSE(m.pose_valid && m.state_text == "TRACKING") << m.seq;
+  // The first pair is the origin, whatever it shows.
+  for (const vis_odom_t& m : service_->odom.messages) {
+    EXPECT_TRUE(!m.pose_valid || m.state_text == "INIT") << m.seq << " " << m.state_text;
+  }
   finish();
 }
 
