@@ -7,8 +7,10 @@
 #include <chrono>
 #include <filesystem>
 #include <fstream>
-#include <limits>
+#include <iterator>
 #include <map>
+#include <sstream>
+#include <string>
 #include <thread>
 
 #include "core/geometry/rectifier.h"
@@ -66,13 +68,16 @@ double resident_mb(const char* field) {
 // Minor and major page faults of a thread since its start (proc(5): fields 10 and 12 of its stat).
 std::uint64_t page_faults(const std::filesystem::path& task) {
   std::ifstream file(task / "stat");
-  file.ignore(std::numeric_limits<std::streamsize>::max(), ')');  // the name may hold anything before it
+  const std::string stat(std::istreambuf_iterator<char>(file), {});
+  const std::size_t name_end = stat.rfind(')');  // the name may hold anything before it, brackets and lines too
+  if (name_end == std::string::npos) return 0;
+  std::istringstream fields(stat.substr(name_end + 1));
   std::string skipped;
-  for (int field = 3; field < 10; ++field) file >> skipped;
+  for (int field = 3; field < 10; ++field) fields >> skipped;
   std::uint64_t minor = 0;
   std::uint64_t minor_of_children = 0;
   std::uint64_t major = 0;
-  file >> minor >> minor_of_children >> major;
+  fields >> minor >> minor_of_children >> major;
   return minor + major;
 }
 
@@ -112,8 +117,9 @@ void tell_difference(const Snapshot& before, const Snapshot& after, LatencyRun& 
   for (const auto& [name, total] : after.threads) {
     ThreadCost cost = total;
     if (const auto earlier = before.threads.find(name); earlier != before.threads.end()) {
-      cost.cpu_ms -= earlier->second.cpu_ms;
-      cost.page_faults -= earlier->second.page_faults;
+      // A thread that ended in between took what it had cost along, and others may bear its name.
+      cost.cpu_ms = std::max(0.0, cost.cpu_ms - earlier->second.cpu_ms);
+      cost.page_faults -= std::min(cost.page_faults, earlier->second.page_faults);
     }
     run.threads.push_back(cost);
   }
