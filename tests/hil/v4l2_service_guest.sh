@@ -51,6 +51,7 @@ finish() {
   cp "$work"/log.lcm* "$out/log.lcm"
   cp "$work/sets.json" "$out/"
 }
+quiet() { sleep 8; }  # between outages: so long the flow of results is checked
 event() { echo "obeyed $(now_ns) $1 $2" >>"$out/events"; }
 
 vivid() {
@@ -67,7 +68,7 @@ vivid() {
   tolerance_ms: 99
 YAML
   until_log 'few points' 1 30
-  sleep 5
+  quiet
   # While a second program holds the device, it stays away after the service has let go of it.
   exec 9</dev/video0
   event off left
@@ -77,7 +78,7 @@ YAML
   event on left
   exec 9<&-
   until_log 'few points' 2 20
-  sleep 5
+  quiet
   event off left
   event off right
   echo vivid.0 >$driver/unbind
@@ -87,7 +88,7 @@ YAML
   event on right
   echo vivid.0 >$driver/bind
   until_log 'few points' 3 20
-  sleep 5
+  quiet
   finish
 }
 
