@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# The whole service on V4L2 in a virtual machine with Debian's kernel: cameras as device nodes -> pelorusd -> LCM and SocketCAN,
-# each with its own listener. Three sessions (v4l2_service_guest.sh): vivid's test card on two devices, which are
-# unplugged; recorded pairs through v4l2loopback on two devices; the same as MJPG on one device, side by side. Checked here:
-# every exposure is a result or a counted loss, every result a set on CAN, an unplugged camera is told within five periods
-# and taken up again, and the poses of recorded pairs are those of `pelorus replay`.
+# The whole service on V4L2 in a virtual machine with Debian's kernel: cameras as device nodes -> pelorusd -> LCM and
+# SocketCAN, each with its own listener. Three sessions (v4l2_service_guest.sh): vivid's test card on two devices,
+# which are unplugged; recorded pairs through v4l2loopback on two devices; the same as MJPG on one device, side by
+# side. Checked here: every exposure is a result or a counted loss, every result a set on CAN, an unplugged camera is
+# told within five periods and taken up again, and the poses of recorded pairs are those of `pelorus replay`.
 # A boot that hangs is tried again.
 # usage: v4l2_service.sh [BUILD_FOLDER [FOLDER_FOR_RECORDINGS]]
 set -euo pipefail
@@ -25,7 +25,8 @@ sed -e 's/width_px: 512/width_px: 320/' -e 's/height_px: 384/height_px: 240/' -e
 "$root/build/bin/pelorus" calib convert "$out/dive" --to kalibr --out "$out/rig.yaml" >/dev/null
 for attempt in 1 2; do
   code=0
-  "$here/guest.sh" -t 280 -m v4l2loopback -o "$out" -- "$here/v4l2_service_guest.sh" "$root/build/bin" "$build/tests" || code=$?
+  "$here/guest.sh" -t 280 -m v4l2loopback -o "$out" -- \
+    "$here/v4l2_service_guest.sh" "$root/build/bin" "$build/tests" || code=$?
   [ $code = 124 ] || [ $code = 125 ] || break
   echo "v4l2_service.sh: the guest did not come up (attempt $attempt)" >&2
 done
