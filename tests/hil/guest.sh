@@ -119,6 +119,7 @@ UNIT
 fi
 
 cp "$(command -v busybox)" "$boot/bin/busybox"
+case $PWD/ in /tmp/*) touch "$boot/project-in-tmp" ;; esac # its /tmp is an overlay then, like the rest of the root
 for module in virtio_pci 9pnet_virtio 9p overlay $modules; do
   case $module in
     /*) echo "insmod $module" ;;
@@ -165,7 +166,7 @@ if [ -e /root/out/.hil.service ]; then
   : >/root/etc/fstab
   exec $b switch_root /root /lib/systemd/systemd --unit=hil.service
 fi
-$b mount -t tmpfs none /root/run; $b mount -t tmpfs none /root/tmp
+$b mount -t tmpfs none /root/run; [ -e /project-in-tmp ] || $b mount -t tmpfs none /root/tmp
 $b mkdir -p /root/dev/shm /root/dev/pts
 $b mount -t tmpfs none /root/dev/shm; $b mount -t devpts none /root/dev/pts
 $b chroot /root /bin/bash /out/.command </root/dev/null
