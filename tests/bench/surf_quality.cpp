@@ -52,26 +52,38 @@ bool are_twins(const SurfPoint& a, const SurfPoint& b) {
   return std::hypot(a.u_px - b.u_px, a.v_px - b.v_px) < smaller && std::max(a.scale, b.scale) < 1.23F * smaller;
 }
 
-// The strongest `count`, by score; dlib orders nothing and drops points near the edge after its own limit.
-Features dlibs(const cv::Mat& image, std::size_t count, bool distinct) {
+// The strongest `count`, by score: what dlib::get_surf_points does, which orders nothing and always orients, step by
+// step.
+Features dlibs(const cv::Mat& image, std::size_t count, bool upright, bool distinct) {
   dlib::array2d<unsigned char> copy(image.rows, image.cols);
   for (int v = 0; v < image.rows; ++v) {
     for (int u = 0; u < image.cols; ++u) copy[v][u] = image.at<unsigned char>(v, u);
   }
-  std::vector<dlib::surf_point> found = dlib::get_surf_points(copy, static_cast<long>(3 * count), 0.05);
-  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.p.score > b.p.score; });
+  dlib::integral_image sums;
+  sums.load(copy);
+  dlib::hessian_pyramid pyramid;
+  pyramid.build_pyramid(sums, 4, 6, 2);
+  std::vector<dlib::interest_point> found;
+  dlib::get_interest_points(pyramid, 0.05, found);
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
+  const dlib::rectangle inside = dlib::get_rect(sums);
   Features f;
-  for (const dlib::surf_point& p : found) {
+  for (const dlib::interest_point& p : found) {
     if (f.points.size() == count) break;
+    const auto side = static_cast<unsigned long>(32 * p.scale);
+    if (!inside.contains(dlib::centered_rect(p.center, side, side))) continue;
     SurfPoint point;
-    point.u_px = static_cast<float>(p.p.center.x());
-    point.v_px = static_cast<float>(p.p.center.y());
-    point.scale = static_cast<float>(p.p.scale);
-    point.laplacian = p.p.laplacian > 0 ? 1 : -1;
+    point.u_px = static_cast<float>(p.center.x());
+    point.v_px = static_cast<float>(p.center.y());
+    point.scale = static_cast<float>(p.scale);
+    point.laplacian = p.laplacian > 0 ? 1 : -1;
     const auto twin = [&](const SurfPoint& q) { return are_twins(point, q); };
     if (distinct && std::any_of(f.points.begin(), f.points.end(), twin)) continue;
+    const double angle = upright ? 0.0 : dlib::compute_dominant_angle(sums, p.center, p.scale);
+    dlib::matrix<double, 64, 1> described;
+    dlib::compute_surf_descriptor(sums, p.center, p.scale, angle, described);
     SurfDescriptor d;
-    for (int i = 0; i < 64; ++i) d[static_cast<std::size_t>(i)] = static_cast<float>(p.des(i));
+    for (int k = 0; k < 64; ++k) d[static_cast<std::size_t>(k)] = static_cast<float>(described(k));
     f.points.push_back(point);
     f.descriptors.push_back(d);
   }
@@ -146,10 +158,11 @@ void compare(const std::string& name, const cv::Mat& a, const cv::Mat& b, const 
   };
   const auto n = static_cast<std::size_t>(count);
   print("ours", ours(a, count, false, true), ours(b, count, false, true));
-  print("dlib, distinct", dlibs(a, n, true), dlibs(b, n, true));
+  print("dlib, distinct", dlibs(a, n, false, true), dlibs(b, n, false, true));
   print("ours, twins kept", ours(a, count, false, false), ours(b, count, false, false));
-  print("dlib, twins kept", dlibs(a, n, false), dlibs(b, n, false));
+  print("dlib, twins kept", dlibs(a, n, false, false), dlibs(b, n, false, false));
   print("ours, upright", ours(a, count, true, true), ours(b, count, true, true));
+  print("dlib, upright", dlibs(a, n, true, true), dlibs(b, n, true, true));
 }
 
 Eigen::Matrix3d similarity(double angle_deg, double zoom, double cu, double cv) {

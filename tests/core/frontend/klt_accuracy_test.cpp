@@ -61,7 +61,8 @@ struct Tracked {
 
 constexpr int kLevels = 4;
 
-Tracked track_ours(const cv::Mat& from, const cv::Mat& to, const std::vector<Point>& points) {
+Tracked track_ours(const cv::Mat& from, const cv::Mat& to, const std::vector<Point>& points,
+                   const KltConfig& config = {}) {
   const auto view = [](const cv::Mat& m) {
     return ImageView{m.data, m.cols, m.rows, static_cast<std::ptrdiff_t>(m.step)};
   };
@@ -76,7 +77,7 @@ Tracked track_ours(const cv::Mat& from, const cv::Mat& to, const std::vector<Poi
     task.v_from_px = task.v_to_px = p.v;
     tasks.push_back(task);
   }
-  Klt({}).track(a, b, tasks, KltSearch::plane, kLevels - 1);
+  Klt(config).track(a, b, tasks, KltSearch::plane, kLevels - 1);
   Tracked tracked;
   tracked.points = static_cast<int>(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -233,7 +234,11 @@ TEST(KltAccuracy, NoWorseThanOpenCvOnRubberWhale) {
 TEST(KltAccuracy, NoWorseThanOpenCvOnKitti2012) {
   PELORUS_USE_REAL_DATA(path, "kitti2012_flow");
   ASSERT_TRUE(std::filesystem::exists(path / "flow_noc")) << path << " holds no flow_noc";
+  // OpenCV refuses next to nothing: where ours is let accept as much, it has to find no fewer.
+  KltConfig lenient;
+  lenient.min_ncc = lenient.confirmed_ncc = 0.7F;
   Tracked all_ours;
+  Tracked all_lenient;
   Tracked all_opencv;
   for (const char* scene : {"000027", "000074", "000138", "000151", "000174"}) {
     const std::string name(scene);
@@ -256,13 +261,18 @@ TEST(KltAccuracy, NoWorseThanOpenCvOnKitti2012) {
       sum.points += t.points;
     };
     add(all_ours, ours);
+    add(all_lenient, track_ours(from, to, points, lenient));
     add(all_opencv, opencv);
   }
   print("KITTI 2012, all", all_ours, all_opencv);
+  print("KITTI 2012, all, lenient", all_lenient, all_opencv);
   EXPECT_LE(all_ours.rms_within(1), all_opencv.rms_within(1) * 1.02);
   EXPECT_LE(all_ours.quantile(0.5), all_opencv.quantile(0.5) * 1.02);
   EXPECT_LT(all_ours.gross_share(3), all_opencv.gross_share(3));
   EXPECT_GE(all_ours.share_within(3), all_opencv.share_within(3) - 0.01);
+  EXPECT_GT(all_lenient.share_within(3), all_opencv.share_within(3));
+  EXPECT_LT(all_lenient.gross_share(3), all_opencv.gross_share(3));
+  EXPECT_LT(all_lenient.quantile(0.5), all_opencv.quantile(0.5));
 }
 
 }  // namespace
