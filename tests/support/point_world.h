@@ -69,7 +69,7 @@ class PointWorld {
     M_world_.push_back(there * se3_exp(twist_obj) * there.inverse());
     std::uniform_real_distribution<double> side(-1, 1);
     for (int i = 0; i < count;) {
-      const Eigen::Vector3d p(side(random_), side(random_), side(random_));
+      const Eigen::Vector3d p = draw(side, random_);
       if (p.norm() > 1) continue;
       points_.push_back({body, center + radius_m * p});
       ++i;
@@ -103,7 +103,7 @@ class PointWorld {
         Eigen::Vector3d z = kRig.project(p_cam);
         seen = seen && p_cam.z() > 0.3 && z.x() > 0 && z.x() < kRig.width && z.y() > 0 && z.y() < kRig.height &&
                z.z() > 0 && !(point.body == 0 && hidden(view, z));
-        if (noise_px > 0) z += Eigen::Vector3d(noise(random), noise(random), noise(random));
+        if (noise_px > 0) z += draw(noise, random);
         z_px.push_back(z);
         p_world = M_world_[static_cast<std::size_t>(point.body)] * p_world;
       }
@@ -132,6 +132,16 @@ class PointWorld {
     int body = 0;
     Eigen::Vector3d p_world;
   };
+
+  // One number after the other: the order in which arguments are evaluated differs between x86 and arm64, and so would
+  // the worlds.
+  template <class Distribution>
+  static Eigen::Vector3d draw(Distribution& distribution, std::mt19937_64& random) {
+    const double z = distribution(random);
+    const double y = distribution(random);
+    const double x = distribution(random);
+    return {x, y, z};
+  }
 
   // Roughly: within the box around a body's points in the first frame, which movers of a few pixels hardly leave.
   [[nodiscard]] bool hidden(const WorldView& view, const Eigen::Vector3d& z_px) const {
