@@ -28,7 +28,7 @@ void Pipeline::State::begin(const StereoFrame& frame, Shed what_to_shed) {
   ego_outcome = StageOutcome::not_run;
   world = WorldStep{};
   world.time = frame.capture_time;
-  world.seed = frame.seq;
+  world.seed = steps++;
   if (started) {
     world.dt_s = std::max(1e-4, seconds(frame.capture_time - last_time));
     result.report.frames_missed = static_cast<std::int32_t>(frame.seq - last_seq) - 1;

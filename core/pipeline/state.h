@@ -72,6 +72,7 @@ struct Pipeline::State {
 
   // Remembered.
   bool started = false;
+  std::uint64_t steps = 0;  // seeds the draws: live and replayed pictures get the same, whatever their numbers
   Timestamp last_time;
   std::uint64_t last_seq = 0;
   Rigid3 T_world_cam = Rigid3::Identity();

@@ -275,6 +275,21 @@ TEST(Pipeline, TwoInstancesGiveIdenticalResults) {
   expect_equal_runs(first, second, 8);
 }
 
+// So that a recording that begins anywhere, or a replay of what a live run saw, has the same draws.
+TEST(Pipeline, NumbersOfFramesThatBeginElsewhereChangeNothing) {
+  Pipeline from_zero({}, kRig);
+  Pipeline from_seven({}, kRig);
+  FrameResult result;
+  for (int frame = 0; frame < 8; ++frame) {
+    const StereoImages images = plane_with_board(frame, {});
+    const Timestamp time{frame * 100'000'000LL};
+    result = from_zero.step({static_cast<std::uint64_t>(frame), time, images.left.view(), images.right.view()});
+    expect_equal(result, from_seven.step(
+                             {static_cast<std::uint64_t>(frame + 7), time, images.left.view(), images.right.view()}));
+  }
+  EXPECT_EQ(result.objects_size, 1);
+}
+
 TEST(Pipeline, FramesThatWereMissedAreCountedAndBridged) {
   Pipeline pipeline({}, kRig);
   for (int frame = 0; frame < 3; ++frame) (void)step(pipeline, frame, plane(frame));
