@@ -98,7 +98,7 @@ Result<int> run_verb(const DemoArguments& arguments) {
   std::printf("Images      %s (EuRoC layout, with truth)\n", dataset.c_str());
   if (page_template().empty()) return 0;  // built without the page
   const fs::path report = ResultPaths(results).report;
-  const Result<Ok> written = write_report(results, dataset.string(), "", report);
+  const auto written = write_report(results, dataset.string(), "", report);
   if (!written) return written.error();
   std::printf("Report      %s (open it in a browser)\n", report.c_str());
   return 0;

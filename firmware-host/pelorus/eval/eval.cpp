@@ -32,6 +32,7 @@ Result<int> run_verb(const EvalArguments& arguments) {
   }
   const std::string text = arguments.json ? to_json(run.value()) + "\n" : to_table(run.value());
   std::fputs(text.c_str(), stdout);
+  if (run.value().doubt) std::fprintf(stderr, "pelorus: warning: %s\n", run.value().doubt->c_str());
   if (!run.value().has_truth) {
     return Error{ErrorCode::bad_input, arguments.dataset,
                  "the data set holds no truth: only the run's own facts are shown",
@@ -41,7 +42,7 @@ Result<int> run_verb(const EvalArguments& arguments) {
     return Error{ErrorCode::bad_input, arguments.out, "fewer than two poses have truth of the same time",
                  "check that the run is one of this data set"};
   }
-  return 0;
+  return done_exit_code(arguments.out);
 }
 
 }  // namespace
@@ -61,7 +62,8 @@ Verb add_eval(CLI::App& app) {
       ->check(above_zero())
       ->capture_default_str();
   parser->footer(
-      "Exit codes: 0 evaluated, 2 usage, 3 bad input or no truth, 4 calibration, 5 goals, 6 a file cannot be read.\n"
+      "Exit codes: 0 evaluated, 2 usage, 3 bad input or no truth, or the run is INCOMPLETE, 4 calibration, 5 goals,\n"
+      "6 a file cannot be read.\n"
       "Goals that are met or missed show in the table; they do not change the exit code.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }

@@ -131,7 +131,8 @@ std::string to_json(const RunEvaluation& run) {
       .number("step_p99_ms", run.step_times ? run.step_times->p99_ms : kUnknown)
       .flag("has_truth", run.has_truth)
       .flag("exact_truth", run.exact_truth)
-      .text("truth_origin", run.truth_origin);
+      .text("truth_origin", run.truth_origin)
+      .raw("truth_doubt", run.doubt ? json_text(*run.doubt) : "null");
   json.raw("camera",
            run.evaluation.camera ? camera_json(*run.evaluation.camera, run.evaluation.camera_consistency) : "null");
   json.raw("objects", run.evaluation.knows_bodies ? objects_json(run.evaluation) : "null");

@@ -1,6 +1,7 @@
 #include "firmware-host/pelorus/eval/eval_run.h"
 
 #include "firmware-host/pelorus/eval/eval_truth.h"
+#include "firmware-host/pelorus/eval/truth_doubt.h"
 #include "firmware-host/pelorus/results/incomplete_mark.h"
 
 namespace pelorus {
@@ -36,6 +37,7 @@ Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calib
   result.scale_known = judged.truth->scale_known;
   result.truth_origin = judged.truth->origin;
   result.evaluation = evaluate(judged.run, *judged.truth, config);
+  result.doubt = truth_doubt(result.evaluation);
   return judged;
 }
 

@@ -22,6 +22,7 @@ struct RunEvaluation {
   bool exact_truth = false;
   bool scale_known = true;
   std::string truth_origin;
+  std::optional<std::string> doubt;       // why the truth may be that of another run (truth_doubt)
   Goals goals;                            // of the data set
   std::optional<std::string> incomplete;  // why the run's files hold less than the recording (IncompleteMark)
 };

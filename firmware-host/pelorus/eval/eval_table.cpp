@@ -63,7 +63,8 @@ std::string facts_text(const RunEvaluation& run) {
   if (run.step_times) {
     text += format("; step median %.1f ms, p99 %.1f ms", run.step_times->median_ms, run.step_times->p99_ms);
   }
-  return text + "\nTruth  " + (run.has_truth ? run.truth_origin : "none") + "\n";
+  return text + "\nTruth  " + (run.has_truth ? run.truth_origin : "none") + "\n" +
+         (run.doubt ? "       DOUBTFUL: " + *run.doubt + "\n" : "");
 }
 
 // Lengths where they read best: centimetres for dives, metres for roads.

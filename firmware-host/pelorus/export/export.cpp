@@ -84,7 +84,7 @@ Result<int> export_clouds(const ExportArguments& arguments) {
     if (auto done = write_file(path, ply_text(points.value(), body), arguments.overwrite); !done) return done.error();
     std::printf("%s\n", path.c_str());
   }
-  return 0;
+  return done_exit_code(arguments.run);
 }
 
 Result<int> run_export(const ExportArguments& arguments) {
@@ -103,7 +103,7 @@ Result<int> run_export(const ExportArguments& arguments) {
                                                     : export_trajectory(arguments, run.value(), path);
   if (!done) return done.error();
   std::printf("%s\n", path.c_str());
-  return 0;
+  return done_exit_code(arguments.run);
 }
 
 }  // namespace
@@ -124,7 +124,9 @@ Verb add_export(CLI::App& app) {
                    "tum, kitti: this body's trajectory in place of the camera's; ply: its points alone")
       ->check(CLI::PositiveNumber);
   parser->add_flag("--overwrite", arguments->overwrite, "Replace a file of that name");
-  parser->footer("Exit codes: 0 written, 2 usage, 3 no run or nothing in it to write, 6 input/output.");
+  parser->footer(
+      "Exit codes: 0 written, 2 usage, 3 no run or nothing in it to write, or written from an INCOMPLETE run,\n"
+      "6 input/output.");
   return {parser, [arguments] { return run_export(*arguments); }};
 }
 

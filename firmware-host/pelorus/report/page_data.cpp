@@ -15,6 +15,7 @@ std::string notes_json(const ReportInput& input, const ShownFrames& shown) {
   std::vector<std::string> notes;
   const auto note = [&notes](const std::string& text) { notes.push_back(text); };
   if (const auto& reason = input.judged.evaluation.incomplete) note("This run is INCOMPLETE: " + *reason + ".");
+  if (const auto& doubt = input.judged.evaluation.doubt) note("The truth is DOUBTFUL: " + *doubt + ".");
   if (!input.judged.truth) {
     note(input.judged.evaluation.dataset.empty()
              ? "No data set was named, so errors against truth are not shown."

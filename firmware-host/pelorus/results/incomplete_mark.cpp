@@ -49,4 +49,8 @@ std::string incomplete_warning(const std::filesystem::path& folder) {
   return reason ? "pelorus: " + folder.string() + ": the run is INCOMPLETE: " + *reason + "\n" : "";
 }
 
+int done_exit_code(const std::filesystem::path& folder) {
+  return incomplete_reason(folder) ? exit_code(ErrorCode::bad_input) : 0;
+}
+
 }  // namespace pelorus

@@ -32,4 +32,7 @@ class IncompleteMark {
 // The same as a line for stderr, of the verbs that read runs; empty without a mark.
 [[nodiscard]] std::string incomplete_warning(const std::filesystem::path& folder);
 
+// Exit code of a verb that has done its work on a run: 0, or 3 with a mark, as `replay` for what lacks something.
+[[nodiscard]] int done_exit_code(const std::filesystem::path& folder);
+
 }  // namespace pelorus

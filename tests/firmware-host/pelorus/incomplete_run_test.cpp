@@ -46,12 +46,16 @@ class IncompleteRun : public testing::Test {
     EXPECT_TRUE(holds(table.text, "the run is INCOMPLETE: ")) << table.text;
     EXPECT_TRUE(holds(table.text, "       INCOMPLETE: ")) << "in the table too\n" << table.text;
     EXPECT_TRUE(holds(table.text, reason)) << table.text;
+    EXPECT_EQ(table.exit_code, 3) << "not the code of a whole run";
     EXPECT_TRUE(holds(tool("eval --json " + dive_.string() + " " + out_.string()).text, "\"incomplete\":\""));
     const Outcome exported = tool("export " + out_.string() + " --overwrite --format csv");
     EXPECT_TRUE(holds(exported.text, "the run is INCOMPLETE: ")) << exported.text;
+    EXPECT_EQ(exported.exit_code, 3);
+    EXPECT_TRUE(fs::exists(out_ / "trajectories.csv")) << exported.text;
     const Outcome page = tool("report " + out_.string());
     EXPECT_TRUE(holds(page.text, "the run is INCOMPLETE: ")) << page.text;
-    if (page.exit_code == 0) {
+    EXPECT_EQ(page.exit_code, 3);
+    if (fs::exists(out_ / "report.html")) {  // not built without the page
       EXPECT_TRUE(holds(read_text(out_ / "report.html"), "This run is INCOMPLETE: "));
     }
   }
