@@ -9,6 +9,7 @@ import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {delimiter, join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
+import {LABEL_HEIGHT, placeLabels} from '../../../firmware-host/pelorus/report/web/src/labels.mjs';
 
 const [, , pelorus, webBuild, scene] = process.argv;
 const VIEWPORT = {width: 1366, height: 768}; // a laptop's
@@ -115,6 +116,21 @@ async function checkParts(page) {
   assert.ok(!found.wrong, 'no figure is NaN');
 }
 
+// Names of paths that end at one place, in a corner of the view.
+function checkLabels() {
+  const box = {left: 50, right: 600, top: 10, bottom: 300};
+  const labels = [[590, 295], [588, 296], [590, 290], [300, 12], [310, 11], [300, 200]].map(([x, y]) => ({x, y, width: 70}));
+  const placed = placeLabels(labels, box);
+  placed.forEach((a, i) => {
+    assert.ok(a.x >= box.left && a.x + 70 <= box.right, `label ${i} at ${a.x}: within the view`);
+    assert.ok(a.y >= box.top && a.y <= box.bottom, `label ${i} at height ${a.y}: within the view`);
+    for (const b of placed.slice(0, i)) {
+      assert.ok(Math.abs(a.x - b.x) >= 70 || Math.abs(a.y - b.y) >= LABEL_HEIGHT, `label ${i} lies over another`);
+    }
+  });
+  assert.equal(placed[5].y, 200, 'one that stands alone stays at its end');
+}
+
 async function checkPrint(page) {
   await page.emulateMediaType('print');
   const shown = await page.evaluate(() =>
@@ -146,6 +162,7 @@ async function run(chromium, folder) {
     await page.setOfflineMode(true);
     await page.goto(pathToFileURL(file).href, {waitUntil: 'load'});
     const expected = distances(out);
+    checkLabels();
     await checkParts(page);
     await checkPlay(page, expected);
     await checkFollow(page);

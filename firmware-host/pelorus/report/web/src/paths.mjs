@@ -3,11 +3,13 @@
 import * as Plot from '@observablehq/plot';
 import {INK, legend} from './format.mjs';
 import {viewPaths} from './geometry.mjs';
+import {placeLabels} from './labels.mjs';
 
 const WIDTH = 1190;
 const TALLEST = 430;
 const MARGIN = {marginLeft: 56, marginRight: 12, marginTop: 18, marginBottom: 38};
 const MOST_SEABED_POINTS = 4000;
+const CHARACTER_WIDTH = 8.2; // bold, 13 px, at most
 
 // The range that holds the ways, and the seabed but for its few farthest points.
 function range(ways, seabed, axis) {
@@ -43,13 +45,22 @@ function layout(paths) {
   return {x: [along[0] - extra, along[1] + extra], views: across.map((one) => ({y: padded(one), height: height(one)}))};
 }
 
+// The names of the objects at the ends of their paths, in the units of the view.
+function endLabels(objects, axis, x, {y: yRange, height}) {
+  const ends = objects.map(({name, color, path}) => ({name, color, p: path.findLast((p) => p !== null)})).filter(({p}) => p);
+  const box = {left: MARGIN.marginLeft, right: WIDTH - MARGIN.marginRight, top: MARGIN.marginTop, bottom: height - MARGIN.marginBottom};
+  const scale = {x: (box.right - box.left) / (x[1] - x[0]), y: (box.bottom - box.top) / (yRange[1] - yRange[0])};
+  const places = placeLabels(ends.map(({name, p}) => ({x: box.left + (p[0] - x[0]) * scale.x,
+    y: box.bottom - (p[axis] - yRange[0]) * scale.y, width: name.length * CHARACTER_WIDTH})), box);
+  return ends.map(({name, color}, i) => ({name, color,
+    x: x[0] + (places[i].x - box.left) / scale.x, y: yRange[0] + (box.bottom - places[i].y) / scale.y}));
+}
+
 function drawView(paths, axis, label, x, {y: yRange, height}) {
   const every = Math.max(1, Math.ceil(paths.seabed.length / MOST_SEABED_POINTS));
   const channels = {x: (p) => (p ? p[0] : NaN), y: (p) => (p ? p[axis] : NaN)};
   const line = (path, stroke, options) => Plot.line(path, {...channels, stroke, clip: true, ...options});
   const truth = {strokeDasharray: '4 6', strokeWidth: 1};
-  const ends = paths.objects.map(({name, color, path}) => ({name, color, p: path.findLast((p) => p !== null)}))
-    .filter(({p}) => p);
   return Plot.plot({
     width: WIDTH, height, ...MARGIN, grid: true, style: {fontSize: '13px'},
     x: {domain: x, label: 'along track [m]', labelAnchor: 'center'},
@@ -61,8 +72,8 @@ function drawView(paths, axis, label, x, {y: yRange, height}) {
       // Truth lies over the estimates, thin and dashed: under them it would not be seen.
       paths.vehicleTruth ? line(paths.vehicleTruth, '#b8c4cf', truth) : null,
       ...paths.bodies.map(({path}) => line(path, INK, truth)),
-      Plot.text(ends, {x: (e) => e.p[0], y: (e) => e.p[axis], text: 'name', dy: -10, fill: 'color',
-        stroke: '#fff', strokeWidth: 4, fontWeight: 600}),
+      Plot.text(endLabels(paths.objects, axis, x, {y: yRange, height}), {x: 'x', y: 'y', text: 'name', textAnchor: 'start',
+        fill: 'color', stroke: '#fff', strokeWidth: 4, fontWeight: 600, ariaLabel: 'name'}),
     ],
   });
 }
