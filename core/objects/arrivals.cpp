@@ -50,29 +50,6 @@ void Registry::adopt(const StereoRig& rig, PointPairs pairs, std::span<const Poi
   }
 }
 
-// A body that comes back shows too little at first to be recognised and is taken for a new one: looked at again as more
-// of it shows, until it is confirmed.
-void Registry::recognise_tentative(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
-                                   const WorldStep& world, std::span<BodyId> owner) {
-  Group& group = part_group_;
-  for (MovingBody& body : bodies_) {
-    if (body.phase != ObjectPhase::tentative || !body.measured) continue;
-    group.members = body.members;
-    group.H_curr_prev = body.H_curr_prev;
-    Reidentified found = reidentify(rig, pairs, group, track_of_pair, bodies_, T_cam_obj_expected_, world.time,
-                                    world.seed, reidentification_);
-    if (found.body < 0 && body.frames_measured + 1 >= config_.confirm_frames) {
-      found = recognise_motion(rig, pairs, group, bodies_, T_cam_obj_expected_,
-                               world.T_world_curr.inverse() * world.T_world_prev, world.time, reidentification_);
-    }
-    if (found.body < 0) continue;
-    body.members.clear();
-    body.measured = false;
-    body.phase = ObjectPhase::ended;
-    resume(rig, pairs, group, found, world, owner);
-  }
-}
-
 // Identity with a body in sight, else recognition of one that was out of sight, else a birth (paper 5.2.4).
 void Registry::adopt_group(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles, const Group& group,
                            std::span<const Track* const> track_of_pair, const WorldStep& world,
@@ -145,22 +122,6 @@ void Registry::give_birth(const StereoRig& rig, PointPairs pairs, const Group& g
   body.T_cam_obj = world.T_world_prev.inverse() * body.T_world_obj;
   add_previous_frame(rig, pairs, world, body);
   bodies_.push_back(std::move(body));
-}
-
-// The body is back: its pose comes from the matches, its window starts anew in the same frame.
-void Registry::resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
-                      const WorldStep& world, std::span<BodyId> owner) {
-  MovingBody& body = bodies_[static_cast<std::size_t>(found.body)];
-  body.members = group.members;
-  body.H_curr_prev = group.H_curr_prev;
-  body.T_cam_obj = group.H_curr_prev.inverse() * found.T_cam_obj;  // at the previous frame
-  body.T_world_obj = world.T_world_prev * body.T_cam_obj;
-  body.measured = true;
-  body.place_known = true;
-  body.window.clear();
-  for (const PointIndex i : group.members) owner[static_cast<std::size_t>(i)] = body.id;
-  body.frames_missed = 0;  // the window starts anew, at the previous frame
-  add_previous_frame(rig, pairs, world, body);
 }
 
 }  // namespace pelorus

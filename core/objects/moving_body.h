@@ -21,6 +21,8 @@ struct ModelPoint {
   std::int64_t last_frame = 0;  // number of the step in which it was last seen
 };
 
+inline constexpr std::size_t kMaxModelPoints = 512;  // of a body
+
 struct MovingBody {
   explicit MovingBody(const BodyWindowConfig& window_config) : window(window_config) {}
   explicit MovingBody(BodyWindow&& kept) : window(std::move(kept)) {}
@@ -41,14 +43,17 @@ struct MovingBody {
   Timestamp first_seen;
   Timestamp last_seen;
   int frames_measured = 0;
-  int frames_missed = 0;    // in a row
-  int frames_apart = 0;     // in a row: its points stand in separate parts
-  double evidence = 0;      // sum of log-likelihood ratios, own motion against static
-  bool measured = false;    // in this step
-  bool place_known = true;  // false from a loss of the camera's own motion until the body is recognised
+  int frames_missed = 0;        // in a row
+  int frames_apart = 0;         // in a row: its points stand in separate parts
+  double evidence = 0;          // sum of log-likelihood ratios, own motion against static
+  bool measured = false;        // in this step
+  std::int64_t back_since = 0;  // step in which it came back with a pose to be found better; 0: seen all along
+  bool place_known = true;      // false from a loss of the camera's own motion until the body is recognised
   Rigid3 T_cam_obj = Rigid3::Identity();
   Rigid3 T_world_obj = Rigid3::Identity();
   Matrix6d cov_T_world_obj = Matrix6d::Zero();
+  // Of that: how well the frame of its birth is known, in it (right perturbations). Zero until it was out of sight.
+  Matrix6d cov_birth_frame = Matrix6d::Zero();
   Rigid3 M_world = Rigid3::Identity();
   Matrix6d cov_M_world = Matrix6d::Zero();
   Vector6d twist_obj = Vector6d::Zero();    // per second, in the object frame: T_obj <- T_obj * exp(twist dt)

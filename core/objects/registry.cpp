@@ -12,6 +12,8 @@
 namespace pelorus {
 namespace {
 
+constexpr int kLeastShared = 3;  // points that tie two poses
+
 const PointPair& at(PointPairs pairs, PointIndex i) { return pairs[static_cast<std::size_t>(i)]; }
 
 // The model's entry for a track: a new one takes the place of the longest unseen when the model is full.
@@ -43,7 +45,7 @@ Registry::Registry(const RegistryConfig& config, const MembershipConfig& members
       merge_(merge),
       reidentification_(reidentification),
       two_frame_ba_(ba, capacity) {
-  PELORUS_CHECK(config.max_model_points <= static_cast<int>(kMaxPoints), "registry.max_model_points is too large");
+  PELORUS_CHECK(config.max_model_points <= static_cast<int>(kMaxModelPoints), "registry.max_model_points is too large");
   bodies_.reserve(kMaxObjects);
   spare_.reserve(kMaxObjects);
   for (int k = 0; k < kMaxObjects; ++k) {
@@ -134,22 +136,24 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
   Rigid3 H_curr_prev = body.H_curr_prev;
   Matrix6d cov_H = fit.cov_H;
   Rigid3 T_cam_obj = body.H_curr_prev * body.T_cam_obj;
-  // After frames without it the window's last frame is older than one step: the previous one goes in first.
-  if (body.frames_missed > 0 && body.window.frames() > 0) add_previous_frame(rig, pairs, world, body);
+  if (body.frames_missed > 0 && body.window.frames() > 0) bridge_window(rig, pairs, world, body);
   observations_.clear();
   for (const PointIndex i : body.members) {
     observations_.push_back({at(pairs, i).track, at(pairs, i).curr.z_px, at(pairs, i).sigma_px});
   }
   body.window.add_frame(rig, world.time, T_cam_obj, world.T_world_curr, observations_);
   // Without the window's answer the place is as good as it was before the step, and the step's motion.
+  if (body.frames_missed > 0) expect_birth_frame(world, body);
   const Matrix6d Ad = adjoint(world.T_world_curr);
   const Matrix6d Ad_M = adjoint(world.T_world_curr * H_curr_prev * world.T_world_prev.inverse());
   Matrix6d cov_T_world_obj = Ad_M * body.cov_T_world_obj * Ad_M.transpose() + Ad * cov_H * Ad.transpose();
   if (steps.object_window && body.window.adjust(rig) == StageOutcome::ok) {
     T_cam_obj = body.window.T_cam_body();
     H_curr_prev = T_cam_obj * body.window.T_cam_body_previous().inverse();
-    // Back from coasting its place is the expected one still; the window knows the steps since only.
-    if (body.frames_missed == 0) cov_T_world_obj = Ad * body.window.cov_T_cam_body() * Ad.transpose();
+    // Of a body that was out of sight the window knows the steps since only.
+    const Matrix6d Ad_birth = adjoint(world.T_world_curr * T_cam_obj);
+    cov_T_world_obj =
+        Ad * body.window.cov_T_cam_body() * Ad.transpose() + Ad_birth * body.cov_birth_frame * Ad_birth.transpose();
     cov_H = body.window.cov_H_curr_prev();
   }
   if (cov_H.isZero()) {  // neither the step nor the window could be solved: nothing was measured
@@ -170,10 +174,20 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
   const double blend = body.frames_measured == 0 ? 1.0 : 0.6;
   body.twist_obj += blend * (twist - body.twist_obj);
   remember_points(pairs, track_of_pair, body);
+  if (body.back_since > 0) recover_birth_frame(rig, pairs, track_of_pair, world, body);
   ++body.frames_measured;
   body.frames_missed = 0;
   body.last_seen = world.time;
   if (body.phase == ObjectPhase::coasting) body.phase = ObjectPhase::confirmed;
+}
+
+// After frames without it the window's last frame is older than one step: the previous one goes in first. When none of
+// the points is known to the window its frames of before would not be tied to the new ones.
+void Registry::bridge_window(const StereoRig& rig, PointPairs pairs, const WorldStep& world, MovingBody& body) {
+  const auto known = std::count_if(body.members.begin(), body.members.end(),
+                                   [&](PointIndex i) { return body.window.find(at(pairs, i).track) != nullptr; });
+  if (known < kLeastShared) body.window.clear();
+  add_previous_frame(rig, pairs, world, body);
 }
 
 // What the window has to know of the step's beginning: the pose at the previous frame, and what was seen then.

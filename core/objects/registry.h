@@ -29,6 +29,7 @@ struct RegistryConfig {
   int confirm_ego_frames = 12;
   double tentative_patience_frames = 2;
   double coast_s = 4.0;                  // out of sight before a confirmed body ends
+  double recover_after_s = 0.5;          // out of sight; the frame of the body's birth is looked for when it is back
   double sigma_acceleration_mps2 = 0.3;  // growth of the covariance while coasting
   double sigma_acceleration_radps2 = 0.3;
   ClustersConfig clusters;
@@ -90,6 +91,7 @@ class Registry {
  private:
   void measure(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
                const WorldStep& world, const RegistrySteps& steps, MovingBody& body);
+  void bridge_window(const StereoRig& rig, PointPairs pairs, const WorldStep& world, MovingBody& body);
   void add_previous_frame(const StereoRig& rig, PointPairs pairs, const WorldStep& world, MovingBody& body);
   void remember_points(PointPairs pairs, std::span<const Track* const> track_of_pair, MovingBody& body);
   void weigh_evidence(const StereoRig& rig, PointPairs pairs, std::span<const PointRole> roles,
@@ -107,6 +109,9 @@ class Registry {
                   std::span<BodyId> owner);
   void resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
               const WorldStep& world, std::span<BodyId> owner);
+  void expect_birth_frame(const WorldStep& world, MovingBody& body) const;
+  void recover_birth_frame(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
+                           const WorldStep& world, MovingBody& body) const;
   void make_room();
   [[nodiscard]] bool supported(const MovingBody& body, int times) const;
   void retire_ended(std::span<BodyId> owner);

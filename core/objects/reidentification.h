@@ -22,11 +22,24 @@ struct ReidentificationConfig {
   double motion_share = 0.25;  // and to this share of its apparent motion against the static scene
 };
 
-struct Reidentified {
-  std::int32_t body = -1;
+struct Placing {
   Rigid3 T_cam_obj = Rigid3::Identity();  // at the current frame
+  Matrix6d cov_obj = Matrix6d::Zero();    // right perturbations: in the body's frame
   int matches = 0;
 };
+
+struct Reidentified {
+  std::int32_t body = -1;
+  Placing placing;  // without matches: as expected
+};
+
+// Pose of the body by the descriptors of `members` and those of its model that were last seen before `step`. Nothing
+// when fewer than min_matches agree on it.
+[[nodiscard]] std::optional<Placing> place_by_descriptors(const StereoRig& rig, PointPairs pairs,
+                                                          std::span<const PointIndex> members,
+                                                          std::span<const Track* const> track_of_pair,
+                                                          const MovingBody& body, std::int64_t before_step,
+                                                          std::uint64_t seed, const ReidentificationConfig& config);
 
 // `T_cam_obj_expected[j]`: extrapolated pose of body j in the current camera; gates the bodies whose place is known.
 [[nodiscard]] Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& group,

@@ -47,6 +47,12 @@ void BodyWindow::remove(TrackId track) {
   if (const BodyPoint* point = find(track)) points_.erase(points_.begin() + (point - points_.data()));
 }
 
+void BodyWindow::change_frame(const Rigid3& T_new_old) {
+  const Rigid3 T_old_new = T_new_old.inverse();
+  for (Frame& frame : frames_) frame.T_cam_body = orthonormalized(frame.T_cam_body * T_old_new);
+  for (BodyPoint& point : points_) point.p_body = T_new_old * point.p_body;
+}
+
 // Until there are key frames the oldest frame is held; afterwards their inertia fixes the gauge.
 int BodyWindow::number_unknowns() {
   const bool has_keys = frames_.size() > static_cast<std::size_t>(config_.recent_frames);

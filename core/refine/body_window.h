@@ -70,6 +70,8 @@ class BodyWindow {
   [[nodiscard]] std::span<const BodyPoint> points() const { return points_; }
   [[nodiscard]] const BodyPoint* find(TrackId track) const;
   void remove(TrackId track);
+  // The same body in a frame of other origin and axes.
+  void change_frame(const Rigid3& T_new_old);
 
  private:
   // As large as the window may get, so that they need no heap.

@@ -237,6 +237,7 @@ void list(FieldList& f, RegistryConfig& c) {
   f.add("confirm_ego_frames", c.confirm_ego_frames, 1, 1000);
   f.add("tentative_patience_frames", c.tentative_patience_frames, 0, 1000);
   f.add("coast_s", c.coast_s, 0, 600);
+  f.add("recover_after_s", c.recover_after_s, 0, 600);
   f.add("sigma_acceleration_mps2", c.sigma_acceleration_mps2, 1e-4, 1000);
   f.add("sigma_acceleration_radps2", c.sigma_acceleration_radps2, 1e-4, 1000);
   f.add("gap_min_m", c.clusters.min_gap_m, 0, 100);
@@ -245,7 +246,7 @@ void list(FieldList& f, RegistryConfig& c) {
   f.add("min_share_in_parts", c.min_share_in_parts, 0, 1);
   f.add("min_share_of_one", c.min_share_of_one, 0, 1);
   f.add("split_frames", c.split_frames, 1, 1000);
-  f.add("max_model_points", c.max_model_points, 4, 2000);
+  f.add("max_model_points", c.max_model_points, 4, 512);
 }
 
 }  // namespace

@@ -213,11 +213,59 @@ TEST(Reidentification, ReturnsTheIdAndThePoseOfTheBodyThatLooksAlike) {
   for (int number = 1; number <= 2; ++number) {
     const Reidentified found = recognition.run(number);
     ASSERT_EQ(found.body, number - 1);
-    EXPECT_EQ(found.matches, 40);
+    EXPECT_EQ(found.placing.matches, 40);
     const Rigid3 T_true =
         recognition.view.H_curr_prev(number) * recognition.bodies[static_cast<std::size_t>(number - 1)].T_cam_obj;
-    EXPECT_LT(se3_log(found.T_cam_obj * T_true.inverse()).norm(), 1e-6);
+    EXPECT_LT(se3_log(found.placing.T_cam_obj * T_true.inverse()).norm(), 1e-6);
   }
+}
+
+// SURF finds a centre beside where it was found before, in both images alike; every tenth match is a neighbour.
+TEST(Placing, ItsCovarianceTellsTheErrorWithNeighboursAmongTheMatches) {
+  constexpr int kTrials = 100;
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal(0, 1);
+  double nees = 0;
+  double worst_rad = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    Recognition recognition;
+    const std::vector<PointIndex> members = recognition.view.members(1);
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      const double beside_px = m % 10 == 0 ? 3 : 0;
+      const double u_px = beside_px + 0.7 * normal(random);
+      const double v_px = 0.7 * normal(random);
+      const double disparity_px = 0.1 * normal(random);
+      PointPair& pair = recognition.view.pairs[static_cast<std::size_t>(members[m])];
+      pair.curr.z_px += Eigen::Vector3d(u_px, v_px, u_px - disparity_px);
+      pair.curr.p_cam = kRig.triangulate(pair.curr.z_px);
+      pair.sigma_px = 0.05;
+    }
+    const MovingBody& body = recognition.bodies[0];
+    const auto placing = place_by_descriptors(kRig, recognition.view.pairs, members, recognition.track_of_pair, body,
+                                              1000, static_cast<std::uint64_t>(trial), {});
+    ASSERT_TRUE(placing);
+    const Rigid3 T_true = recognition.view.H_curr_prev(1) * body.T_cam_obj;
+    const Vector6d error = se3_log(placing->T_cam_obj.inverse() * T_true);
+    nees += error.dot(placing->cov_obj.ldlt().solve(error)) / kTrials;
+    worst_rad = std::max(worst_rad, error.tail<3>().norm());
+  }
+  EXPECT_GT(nees, 3);
+  EXPECT_LT(nees, 6);  // six unknowns
+  EXPECT_LT(worst_rad, 0.03);
+}
+
+TEST(Placing, OnlyWhatTheModelHadBeforeThatStepCounts) {
+  Recognition recognition;
+  const std::vector<PointIndex> members = recognition.view.members(1);
+  MovingBody& body = recognition.bodies[0];
+  for (std::size_t m = 0; m < body.model.size(); ++m) body.model[m].last_frame = m < 10 ? 6 : 7;
+  const auto place = [&](std::int64_t before_step) {
+    return place_by_descriptors(kRig, recognition.view.pairs, members, recognition.track_of_pair, body, before_step, 1,
+                                {});
+  };
+  EXPECT_EQ(place(8)->matches, 40);
+  EXPECT_EQ(place(7)->matches, 10);
+  EXPECT_FALSE(place(6));
 }
 
 TEST(Reidentification, StrangersAreRefused) {

@@ -129,6 +129,28 @@ TEST(BodyWindow, AFramesReferenceDoesNotMatter) {
   EXPECT_TRUE((window_other.T_cam_body() * T_obj_other.inverse()).isApprox(window.T_cam_body(), 1e-5));
 }
 
+TEST(BodyWindow, InAnotherFrameTheSameBodyMovesTheSame) {
+  const Film film(40, 6, twist(0.02, 0.01, -0.02, 0.01, 0.005, -0.01));
+  const Rigid3 T_new_old = se3_exp(twist(0.3, -0.2, 0.1, 0.4, 0.1, -0.2));
+  BodyWindow window({});
+  BodyWindow changed({});
+  for (BodyWindow* w : {&window, &changed}) {
+    std::mt19937_64 random(7);
+    Rigid3 T_start = film.T_cam_body[0];
+    for (std::size_t k = 0; k < film.T_cam_body.size(); ++k) {
+      if (k > 0) T_start = film.T_cam_body[k] * film.T_cam_body[k - 1].inverse() * w->T_cam_body();
+      w->add_frame(kRig, at_frame(k), T_start, Rigid3::Identity(), film.observe(k, 0.1, 0.1, random));
+      if (k > 0) {
+        ASSERT_EQ(w->adjust(kRig), StageOutcome::ok);
+      }
+      if (w == &changed && k == 3) w->change_frame(T_new_old);
+    }
+  }
+  EXPECT_LT(se3_log(changed.T_cam_body() * T_new_old * window.T_cam_body().inverse()).norm(), 1e-6);
+  EXPECT_LT((changed.find(TrackId{5})->p_body - T_new_old * window.find(TrackId{5})->p_body).norm(), 1e-6);
+  EXPECT_LT((changed.cov_H_curr_prev() - window.cov_H_curr_prev()).norm(), 1e-6 * window.cov_H_curr_prev().norm());
+}
+
 TEST(BodyWindow, TwoSharedPointsAreTooFewAndThePoseStaysAsGiven) {
   const Film film(2, 2, twist(0.02, 0, 0, 0, 0, 0));
   BodyWindow window({});
