@@ -298,6 +298,59 @@ TEST(Reidentification, ABodyInSightOrExpectedElsewhereIsNotACandidate) {
   EXPECT_EQ(recognition.run(1).body, -1);
 }
 
+// What descriptors cannot tell, motion may: the group goes where the body is expected to go.
+struct MotionRecognition : Recognition {
+  Reidentified by_motion(int number) {
+    Group group;
+    group.members = view.members(number);
+    const Rigid3 H_static = view.H_curr_prev(0);
+    return recognise_motion(kRig, view.pairs, group, bodies, T_cam_obj_expected, H_static, now, {});
+  }
+};
+
+TEST(MotionRecognition, TheBodyThatWasToMoveSoIsItWithTheExpectedPoseAndAllItsDoubt) {
+  MotionRecognition recognition;
+  recognition.bodies[0].cov_T_world_obj = 0.04 * Matrix6d::Identity();
+  const Reidentified found = recognition.by_motion(1);
+  ASSERT_EQ(found.body, 0);
+  EXPECT_EQ(found.placing.matches, 0);
+  EXPECT_EQ(found.placing.T_cam_obj.matrix(), recognition.T_cam_obj_expected[0].matrix());
+  // In the body's frame the doubt about its axes does not swing its far origin: 0.04 each, and no more.
+  EXPECT_GT(found.placing.cov_obj.trace(), 6 * 0.0399);
+  EXPECT_EQ(recognition.by_motion(2).body, 1);
+}
+
+TEST(MotionRecognition, AnotherMotionAnotherPlaceOrNoPlaceIsNobody) {
+  const auto with = [](auto&& change) {
+    MotionRecognition recognition;
+    change(recognition);
+    return recognition.by_motion(1).body;
+  };
+  ASSERT_EQ(with([](MotionRecognition&) {}), 0);
+  // 20 mm across at 2 m: 8 px.
+  EXPECT_EQ(with([](MotionRecognition& r) {
+              r.bodies[0].H_curr_prev = Rigid3(Eigen::Translation3d(0, 0.02, 0)) * r.bodies[0].H_curr_prev;
+            }),
+            -1);
+  EXPECT_EQ(with([](MotionRecognition& r) {
+              r.T_cam_obj_expected[0] = Rigid3(Eigen::Translation3d(0, 1.0, 0)) * r.T_cam_obj_expected[0];
+            }),
+            -1);
+  EXPECT_EQ(with([](MotionRecognition& r) { r.bodies[0].place_known = false; }), -1);
+  EXPECT_EQ(with([](MotionRecognition& r) { r.bodies[0].measured = true; }), -1);
+}
+
+TEST(MotionRecognition, WhatMovesLittleMoreThanTheWorldIsNotToldFromItByMotion) {
+  MotionRecognition recognition;
+  // 2 mm a step: 0.8 px against the scene; a miss of 0.4 px is half of that, though far below motion_px.
+  recognition.view = two_bodies(0.3, twist(0.002, 0, 0, 0, 0, 0), twist(0, 0.03, 0, 0, 0, 0));
+  MovingBody& body = recognition.bodies[0];
+  body.H_curr_prev = recognition.view.H_curr_prev(1);
+  EXPECT_EQ(recognition.by_motion(1).body, 0);
+  body.H_curr_prev = Rigid3(Eigen::Translation3d(0, 0.001, 0)) * body.H_curr_prev;
+  EXPECT_EQ(recognition.by_motion(1).body, -1);
+}
+
 TEST(Spread, IsTheDeviationAcrossALineAndStaticPointsInsideAreCounted) {
   std::vector<PointPair> pairs;
   const auto add = [&](double u, double v) {

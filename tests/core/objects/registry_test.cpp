@@ -29,6 +29,7 @@ class Passage {
   void step(int frame, bool bodies_seen = true, int called_moving = -1) {
     WorldView view = world_.observe(frame + 1, kSigma_px, kSigma_px);
     if (!bodies_seen) keep_floor(view);
+    if (hidden_body > 0) hide(view, hidden_body);
     for (PointPair& pair : view.pairs) pair.track.value += new_tracks_;
     restore_bodies(view);
     const std::size_t count = view.pairs.size();
@@ -69,6 +70,7 @@ class Passage {
     view_ = std::move(view);
   }
   void forget_tracks() { body_of_track_.clear(); }
+  int hidden_body = -1;  // something stands before it
   // The front end finds the same spots anew.
   void start_new_tracks() {
     forget_tracks();
@@ -83,6 +85,16 @@ class Passage {
   [[nodiscard]] const WorldView& view() const { return view_; }
 
  private:
+  static void hide(WorldView& view, int body) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < view.pairs.size(); ++i) {
+      if (view.body_of[i] == body) continue;
+      view.pairs[kept] = view.pairs[i];
+      view.body_of[kept++] = view.body_of[i];
+    }
+    view.pairs.resize(kept);
+    view.body_of.resize(kept);
+  }
   static void keep_floor(WorldView& view) {
     std::erase_if(view.pairs, [&](const PointPair& p) {
       return view.body_of[static_cast<std::size_t>(&p - view.pairs.data())] != 0;
@@ -348,6 +360,49 @@ TEST(Registry, TwoHalvesOfOneBodyBecomeOneAndTwoAbreastStayTwo) {
     Passage passage(world);
     for (int frame = 1; frame <= 8; ++frame) passage.step(frame);
     EXPECT_EQ(passage.bodies().size(), gap_m < 0.1 ? 1U : 2U) << "gap " << gap_m;
+  }
+}
+
+// Its ends show on both sides of what hides its middle: by their places they may be two things, and are two bodies
+// then.
+TEST(Registry, ABodyWhosePartsStandApartForFramesGivesUpTheLesser) {
+  PointWorld world = slow_camera(100);
+  const Vector6d step = twist(0.02, 0, 0.005, 0, 0, 0);
+  world.add_body(40, {-0.45, 0, 2.0}, 0.2, step);
+  world.add_body(30, {-0.1, 0, 2.0}, 0.2, step);
+  world.add_body(30, {0.25, 0, 2.0}, 0.2, step);
+  Passage passage(world);
+  for (int frame = 1; frame <= 10; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  EXPECT_GT(passage.bodies()[0].members.size(), 90U);
+  const BodyId whole = passage.bodies()[0].id;
+  passage.hidden_body = 2;
+  for (int frame = 11; frame < 10 + RegistryConfig{}.split_frames; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 1U);
+  EXPECT_GT(passage.bodies()[0].members.size(), 60U);
+  for (int frame = 10 + RegistryConfig{}.split_frames; frame <= 20; ++frame) passage.step(frame);
+  ASSERT_EQ(passage.bodies().size(), 2U);
+  EXPECT_EQ(passage.bodies()[0].id, whole);
+  for (const PointIndex i : passage.bodies()[0].members) {
+    EXPECT_EQ(passage.view().body_of[static_cast<std::size_t>(i)], 1);
+  }
+  for (const PointIndex i : passage.bodies()[1].members) {
+    EXPECT_EQ(passage.view().body_of[static_cast<std::size_t>(i)], 3);
+  }
+}
+
+// A cyclist's leg goes another way than he does; a fish that swims beside a diver does too, at some distance.
+TEST(Registry, ASmallGroupOnABodyIsAPartOfItAndOneApartIsAnObject) {
+  for (const double apart_m : {0.3, 1.0}) {
+    PointWorld world = slow_camera(100);
+    world.add_body(60, {-0.2, 0, 2.0}, 0.3, twist(0.02, 0, 0.005, 0, 0, 0));
+    world.add_body(15, {-0.2 + apart_m, 0, 2.0}, 0.1, twist(0.02, 0.012, 0.005, 0, 0, 0));
+    Passage passage(world);
+    for (int frame = 1; frame <= 12; ++frame) passage.step(frame);
+    ASSERT_GE(passage.bodies().size(), 1U);
+    const auto confirmed = std::count_if(passage.bodies().begin(), passage.bodies().end(),
+                                         [](const MovingBody& body) { return body.phase == ObjectPhase::confirmed; });
+    EXPECT_EQ(confirmed, apart_m > 0.5 ? 2 : 1) << apart_m << " m";
   }
 }
 

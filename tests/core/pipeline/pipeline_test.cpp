@@ -98,6 +98,21 @@ TEST(Pipeline, AMovingBoardIsOneObjectWithItsMotion) {
   EXPECT_LT((result.T_world_cam.translation() - Eigen::Vector3d(0.27, 0, 0)).norm(), 0.01);
 }
 
+TEST(Pipeline, ABodyHasMorePointsWhereRefillKnowsItsOutline) {
+  int points[2] = {};
+  for (const bool refill : {false, true}) {
+    PipelineConfig config;
+    config.front_end.max_points = 300;
+    config.steps.object_refill = refill;
+    Pipeline pipeline(config, kRig);
+    FrameResult result;
+    for (int frame = 0; frame < 14; ++frame) result = step(pipeline, frame, plane_with_board(frame, {}));
+    ASSERT_EQ(result.objects_size, 1);
+    points[refill] = result.objects[0].points;
+  }
+  EXPECT_GT(points[1], 5 * points[0] / 4);
+}
+
 TEST(Pipeline, AKnownBodyThatSetsOffSlowlyDoesNotDragTheCameraAlong) {
   Pipeline pipeline({}, kRig);
   const Board moves_rests_and_sets_off{14, 0.15};
