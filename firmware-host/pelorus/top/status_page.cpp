@@ -52,21 +52,52 @@ PageStyle style_of(std::int8_t state) {
   }
 }
 
+constexpr std::size_t kLabelWidth = 9;
+
+// Takes from `rest` what fits into `room`, up to a gap between two facts, else to a blank; all of it without either.
+std::string take_what_fits(std::string& rest, std::size_t room) {
+  std::size_t end = std::string::npos;
+  if (rest.size() > room) {
+    end = rest.rfind("  ", room);
+    if (end == std::string::npos) end = rest.rfind(' ', room);
+  }
+  const std::string taken = rest.substr(0, end);
+  rest.erase(0, end == std::string::npos ? end : rest.find_first_not_of(' ', end));
+  return taken;
+}
+
 // A page under construction: label in front, then spans; a stale part is faint, behind a red mark with its age.
 class PageWriter {
  public:
-  explicit PageWriter(ArrivalTime now) : now_(now) {}
+  PageWriter(ArrivalTime now, std::size_t columns) : now_(now), columns_(columns) {}
 
   template <class Message>
   void part(const std::optional<Heard<Message>>& heard, double limit_s) {
     stale_ = is_stale(heard, now_, limit_s);
     age_ = heard ? "STALE " + number(heard->age_s(now_), 1, " s") : "NOT HEARD YET";
   }
-  void line(const char* label, const std::string& facts, PageStyle style = PageStyle::plain) {
-    PageLine made{{PageStyle::strong, left(label, 9)}};
+  // Facts that do not fit go on below: a count of faults that is cut off would be as good as none.
+  void line(const char* label, std::string facts, PageStyle style = PageStyle::plain) {
+    PageLine made{{PageStyle::strong, left(label, kLabelWidth)}};
+    std::size_t used = kLabelWidth;
     if (stale_) made.push_back({PageStyle::bad, age_ + "  "});
-    made.push_back({stale_ ? PageStyle::faint : style, facts});
-    lines_.push_back(std::move(made));
+    if (stale_) used += age_.size() + 2;
+    do {
+      made.push_back({stale_ ? PageStyle::faint : style, take_what_fits(facts, columns_ > used ? columns_ - used : 0)});
+      lines_.push_back(std::move(made));
+      made = {{PageStyle::strong, left("", kLabelWidth)}};
+      used = kLabelWidth;
+    } while (!facts.empty());
+  }
+  // `rest` stands behind the line, or below it where that is too long.
+  void add_with_rest(PageLine made, const std::string& rest) {
+    const PageStyle style = stale_ ? PageStyle::faint : PageStyle::plain;
+    if (plain_text(made).size() + 3 + rest.size() <= columns_) {
+      made.push_back({style, "   " + rest});
+      return add(std::move(made));
+    }
+    add(std::move(made));
+    add({{PageStyle::strong, left("", kLabelWidth)}, {style, rest}});
   }
   void add(PageLine made) { lines_.push_back(std::move(made)); }
   [[nodiscard]] bool stale() const { return stale_; }
@@ -75,10 +106,17 @@ class PageWriter {
 
  private:
   ArrivalTime now_;
+  std::size_t columns_;
   bool stale_ = false;
   std::string age_;
   std::vector<PageLine> lines_;
 };
+
+std::string state_figures(const vis_odom_t& m) {
+  return "quality " + (m.quality_percent < 0 ? std::string("-") : std::to_string(m.quality_percent)) + " %   resets " +
+         std::to_string(m.reset_counter) + "   points " + std::to_string(m.points_static) + " static, " +
+         std::to_string(m.points_moving) + " moving";
+}
 
 void put_state(const BusView& view, PageWriter& page) {
   if (!view.odom) {
@@ -86,15 +124,11 @@ void put_state(const BusView& view, PageWriter& page) {
     return;
   }
   const vis_odom_t& m = view.odom->message;
-  PageLine made{{PageStyle::strong, left("STATE", 9)}};
+  PageLine made{{PageStyle::strong, left("STATE", kLabelWidth)}};
   if (page.stale()) made.push_back({PageStyle::bad, page.age() + ", last "});
   made.push_back({page.stale() ? PageStyle::faint : style_of(m.state),
                   m.state_text + (m.reason_text.empty() ? "" : ": " + m.reason_text)});
-  made.push_back({page.stale() ? PageStyle::faint : PageStyle::plain,
-                  "   quality " + (m.quality_percent < 0 ? std::string("-") : std::to_string(m.quality_percent)) +
-                      " %   resets " + std::to_string(m.reset_counter) + "   points " +
-                      std::to_string(m.points_static) + " static, " + std::to_string(m.points_moving) + " moving"});
-  page.add(std::move(made));
+  page.add_with_rest(std::move(made), state_figures(m));
 }
 
 void put_motion(const BusView& view, PageWriter& page) {
@@ -238,7 +272,8 @@ void cut(PageLine& line, std::size_t columns) {
 
 std::vector<PageLine> status_page(const BusView& view, ArrivalTime now, PageSize size) {
   constexpr std::size_t kFooter = 1;
-  PageWriter page(now);
+  const auto columns = static_cast<std::size_t>(std::max(1, size.columns));
+  PageWriter page(now, columns);
   page.add({{PageStyle::strong, "pelorus top"}, {PageStyle::plain, "  " + view.vehicle + "  " + view.url}});
   if (!view.trouble.empty()) page.add({{PageStyle::bad, view.trouble}});
   page.add({});
@@ -250,7 +285,7 @@ std::vector<PageLine> status_page(const BusView& view, ArrivalTime now, PageSize
   page.add({});
   std::vector<PageLine> lines = page.take();
   const auto rows = static_cast<std::size_t>(std::max(1, size.rows));
-  PageWriter bodies(now);
+  PageWriter bodies(now, columns);
   bodies.part(view.tracks, kStalePairs_s);
   const std::size_t used = lines.size() + 1 + kFooter;
   put_bodies(view, bodies, rows > used ? rows - used : 0);
@@ -258,7 +293,7 @@ std::vector<PageLine> status_page(const BusView& view, ArrivalTime now, PageSize
   while (lines.size() + kFooter < rows) lines.emplace_back();
   if (lines.size() > rows - kFooter) lines.resize(rows - kFooter);
   lines.push_back({{PageStyle::faint, "q or Ctrl-C ends"}});
-  for (PageLine& line : lines) cut(line, static_cast<std::size_t>(std::max(1, size.columns)));
+  for (PageLine& line : lines) cut(line, columns);
   return lines;
 }
 

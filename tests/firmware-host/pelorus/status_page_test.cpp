@@ -144,7 +144,7 @@ TEST(StatusPage, ClosingSpeedIsWhatTheRangesOfTwoPairsSay) {
 TEST(StatusPage, WhatIsOldIsToldToBeOldOnEveryLine) {
   BusView view = small_view();
   view.odom->at = view.tracks->at = ago(4.2);
-  EXPECT_EQ(line_of(view, "STATE").substr(0, 36), "STATE    STALE 4.2 s, last TRACKING ");
+  EXPECT_EQ(line_of(view, "STATE").substr(0, 35), "STATE    STALE 4.2 s, last TRACKING");
   for (const char* label : {"POSE", "MOTION", "BODIES"}) {
     EXPECT_EQ(line_of(view, label).substr(9, 11), "STALE 4.2 s") << label;
   }
@@ -222,6 +222,24 @@ TEST(StatusPage, EverythingFitsIntoEightyColumnsWithLargeNumbers) {
   health.step_p50_ms = health.step_max_ms = 56.7;
   const auto page = status_page(view, kNow, {300, 24});
   for (std::size_t i = 0; i < page.size(); ++i) EXPECT_LE(plain_text(page[i]).size(), 80U) << plain_text(page[i]);
+}
+
+TEST(StatusPage, WhatDoesNotFitIntoALineGoesOnBelow) {
+  BusView view = small_view();
+  vis_health_t& m = view.health->message;
+  m.losses_of_track = m.camera_timeouts = m.frozen_spells = m.time_jumps = 1234;
+  m.lcm_errors = m.deadline_misses = m.steps_shed = 1234;
+  m.privileges_text =
+      "no real-time scheduling: the limit is 0, memory not locked: the limit is 64 kB, 2 threads pinned";
+  view.odom->message.state_text = "DEGRADED";
+  view.odom->message.reason_text = "which group is the world is unclear";
+  const std::string all = page_text(view, {80, 24});
+  EXPECT_TRUE(says(all, "late 1234 (+1234)\n         shed 1234 (+1215)\n")) << all;
+  EXPECT_TRUE(says(all, "\n         is 64 kB, 2 threads pinned\n")) << all;
+  EXPECT_TRUE(says(all, "unclear\n         quality 87 %   resets 0   points 0 static, 0 moving\n")) << all;
+  EXPECT_TRUE(says(all, "   3  CONFIRMED")) << "there is room for bodies still\n" << all;
+  view.health->at = ago(60);
+  EXPECT_TRUE(says(page_text(view, {80, 24}), " shed 1234 (+1215)\n")) << "old, too";
 }
 
 TEST(StatusPage, ColorsAreAddedToTheWordsAndTakenBack) {
