@@ -106,6 +106,9 @@ void Pipeline::State::start_points() {
   front_end.refill(refill_areas, !started || lost);
   result.report.points_started = front_end.counts().started;
   result.report.refilled = front_end.counts().refilled;
+  result.report[Stage::refill].outcome = result.report.refilled                ? StageOutcome::ok
+                                         : result.report.shed != Shed::nothing ? StageOutcome::skipped
+                                                                               : StageOutcome::not_run;
   started = true;
 }
 

@@ -153,8 +153,10 @@ void Pipeline::State::filter_static_and_moving() {
   if (config.steps.net_filter && net_filter(net, pairs, roles) > 0) collect_fixed();
   if (static_cast<int>(fixed.size()) < config.ego_motion.min_static_points) {
     ego_outcome = StageOutcome::too_few_points;
+    result.report[Stage::static_filters].outcome = ego_outcome;
     return;
   }
+  result.report[Stage::static_filters].outcome = StageOutcome::ok;
   fit_ego_motion();
   if (config.steps.ray_filter) {
     (void)ray_filter(rig, net, pairs, chi2_static, config.ray_filter, roles);

@@ -75,6 +75,13 @@ TEST(Pipeline, FollowsTheCameraPastAPlaneAtRest) {
     result = step(pipeline, frame, plane(frame));
     EXPECT_TRUE(result.pose_valid);
     EXPECT_EQ(result.state == VisionState::init, frame == 0);
+    const StageOutcome filters = result.report[Stage::static_filters].outcome;
+    EXPECT_EQ(filters, frame == 0 ? StageOutcome::not_run : StageOutcome::ok);
+    const StageOutcome refill = result.report[Stage::refill].outcome;
+    EXPECT_EQ(refill, result.report.refilled ? StageOutcome::ok : StageOutcome::not_run);
+    if (frame == 0) {
+      EXPECT_EQ(refill, StageOutcome::ok);
+    }
   }
   // 4 steps of 30 mm; 1 % of it, and depth uncertain by its deviation.
   EXPECT_LT((result.T_world_cam.translation() - Eigen::Vector3d(0.12, 0, 0)).norm(), 0.01);
@@ -372,6 +379,7 @@ TEST(Pipeline, ShedWorkIsLeftOutAndNothingElse) {
     result = step(pipeline, frame, plane_with_board(frame, {}), Shed::refill);
     EXPECT_EQ(result.report.points_started, 0) << frame;
     EXPECT_EQ(result.report.shed, Shed::refill);
+    EXPECT_EQ(result.report[Stage::refill].outcome, StageOutcome::skipped);
     EXPECT_EQ(result.state, VisionState::tracking) << frame;
     EXPECT_EQ(result.objects_size, 1) << frame;
   }
