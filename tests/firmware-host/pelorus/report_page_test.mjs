@@ -133,10 +133,14 @@ function checkLabels() {
 
 async function checkPrint(page) {
   await page.emulateMediaType('print');
+  await page.setViewport({...VIEWPORT, width: 700}); // paper is narrower than a screen
   const shown = await page.evaluate(() =>
     ['replay', 'top-view'].map((id) => getComputedStyle(document.getElementById(id)).display));
   assert.equal(shown[0], 'none');
   assert.notEqual(shown[1], 'none');
+  const columns = await page.$eval('#error-charts', (grid) => getComputedStyle(grid).gridTemplateColumns.split(' ').length);
+  assert.equal(columns, 2, 'charts stand side by side on paper');
+  await page.setViewport(VIEWPORT);
   await page.emulateMediaType(null);
 }
 
