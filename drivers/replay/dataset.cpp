@@ -60,7 +60,7 @@ class RecordedSource final : public StereoSource {
     if (lost > 0)
       text += "\nlost: " + pairs_text(lost) + " (" + std::to_string(pairing_.lost_left) + " without left image, " +
               std::to_string(pairing_.lost_right) + " without right image, " + std::to_string(pairing_.lost_both) +
-              " never recorded), the first at " + std::to_string(pairing_.first_lost.ns) + " ns";
+              " without both), the first at " + std::to_string(pairing_.first_lost.ns) + " ns";
     if (pairing_.longest_gap > kBridgedGap)
       text += "\nwarning: " + std::to_string(pairing_.longest_gap) + " pairs in a row are lost after " +
               std::to_string(pairing_.longest_gap_after.ns) + " ns; motion over such a gap is a guess";
@@ -103,7 +103,14 @@ class RecordedSource final : public StereoSource {
 // The user's calibration, completed by what only the data set knows, or the data set's own.
 Result<LoadedCalibration> choose_calibration(const Recording& recording,
                                              const std::optional<LoadedCalibration>& given) {
-  if (!given) return recording.read_calibration();
+  if (!given) {
+    auto own = recording.read_calibration();
+    if (own) return own;
+    Error error = own.error();
+    error.cure += (error.cure.empty() ? "" : "; or ") +
+                  std::string("name another calibration: --calib FILE, or source.calibration of the service");
+    return error;
+  }
   LoadedCalibration out = *given;
   if (auto checked = check_calibration(out.calibration, out.origin); !checked) return checked.error();
   if (out.calibration.body_known) return out;

@@ -77,7 +77,7 @@ Result<std::vector<RecordedImage>> list_camera(const fs::path& camera_folder) {
   auto images =
       fs::exists(camera_folder / "data.csv", ignored) ? read_data_csv(camera_folder) : read_names(camera_folder);
   if (!images) return images;
-  if (auto present = drop_absent(images.value(), camera_folder / "data"); !present) return present.error();
+  if (auto present = mark_absent(images.value(), camera_folder / "data"); !present) return present.error();
   return images;
 }
 

@@ -77,6 +77,7 @@ Result<std::vector<RecordedImage>> read_times(const fs::path& file, LineParser p
   return times;
 }
 
+// What `folder` should hold by the list of times; an image that is not there has no file.
 Result<std::vector<RecordedImage>> list_images(const fs::path& folder, const std::vector<RecordedImage>& times,
                                                const fs::path& times_file) {
   std::vector<RecordedImage> images;
@@ -103,7 +104,9 @@ Result<std::vector<RecordedImage>> list_images(const fs::path& folder, const std
   const OrderCure cure{"keep one image of each number", "correct " + times_file.string()};
   if (auto order = check_order(images, cure, [&](std::size_t i) { return images[i].file.string(); }); !order)
     return order.error();
-  return images;
+  std::vector<RecordedImage> listed = times;
+  for (RecordedImage& image : images) listed[static_cast<std::size_t>(image.index)].file = std::move(image.file);
+  return listed;
 }
 
 Result<Recording> list_kitti(Recording recording, const fs::path& left_folder, const fs::path& right_folder,
@@ -116,10 +119,9 @@ Result<Recording> list_kitti(Recording recording, const fs::path& left_folder, c
   if (!right) return right.error();
   recording.left = std::move(left.value());
   recording.right = std::move(right.value());
-  const std::int64_t last = std::max(recording.left.back().index, recording.right.back().index);
-  if (last + 1 < static_cast<std::int64_t>(times.value().size()))
-    recording.remarks.push_back(times_file.filename().string() + " lists " + std::to_string(times.value().size()) +
-                                " times, the last image is number " + std::to_string(last));
+  if (recording.left.back().file.empty() && recording.right.back().file.empty())
+    recording.remarks.push_back("the pairs at the end of " + times_file.filename().string() +
+                                " are not there; if the recording was cut on purpose, cut that file too");
   return recording;
 }
 

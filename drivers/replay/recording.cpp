@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <optional>
 
 namespace pelorus {
@@ -26,7 +27,12 @@ std::uint64_t periods_between(Timestamp earlier, Timestamp later, std::int64_t p
   return static_cast<std::uint64_t>(std::max(1.0, std::round(periods)));
 }
 
-// Walks both lists in time order; each step is a pair or a single image, which advances seq but is lost.
+std::size_t count_present(const std::vector<RecordedImage>& images) {
+  return static_cast<std::size_t>(
+      std::count_if(images.begin(), images.end(), [](const RecordedImage& image) { return !image.file.empty(); }));
+}
+
+// Walks both lists in time order; each step is an instant at which there should be a pair, and advances seq.
 class Pairer {
  public:
   Pairer(const Recording& recording, Pairing& out) : recording_(recording), out_(out) {
@@ -34,32 +40,35 @@ class Pairer {
   }
 
   void run() {
-    std::size_t l = 0;
-    std::size_t r = 0;
-    while (l < recording_.left.size() || r < recording_.right.size()) {
-      if (r == recording_.right.size()) {
-        single(recording_.left[l++].time, out_.lost_right);
-      } else if (l == recording_.left.size()) {
-        single(recording_.right[r++].time, out_.lost_left);
-      } else {
-        const RecordedImage& left = recording_.left[l];
-        const RecordedImage& right = recording_.right[r];
-        if (std::abs(left.time.ns - right.time.ns) <= tolerance_ns_) {
-          pair(left, right);
-          ++l;
-          ++r;
-        } else if (left.time < right.time) {
-          single(left.time, out_.lost_right);
-          ++l;
-        } else {
-          single(right.time, out_.lost_left);
-          ++r;
-        }
-      }
+    const RecordedImage* left = recording_.left.data();
+    const RecordedImage* const left_end = left + recording_.left.size();
+    const RecordedImage* right = recording_.right.data();
+    const RecordedImage* const right_end = right + recording_.right.size();
+    while (left != left_end || right != right_end) {
+      const std::int64_t skew_ns = left == left_end     ? kNever_ns  // the right one is alone
+                                   : right == right_end ? -kNever_ns
+                                                        : left->time.ns - right->time.ns;
+      const bool together = std::abs(skew_ns) <= tolerance_ns_;
+      const RecordedImage* const now_left = together || skew_ns < 0 ? left++ : nullptr;
+      const RecordedImage* const now_right = together || skew_ns > 0 ? right++ : nullptr;
+      instant(now_left, now_right);
     }
   }
 
  private:
+  static constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
+
+  // At least one of the two is listed.
+  void instant(const RecordedImage* left, const RecordedImage* right) {
+    const Timestamp time = left != nullptr ? left->time : right->time;
+    advance(time);
+    const bool has_left = left != nullptr && !left->file.empty();
+    const bool has_right = right != nullptr && !right->file.empty();
+    if (has_left && has_right) return pair(*left, *right);
+    note_loss(time);
+    ++(has_left ? out_.lost_right : has_right ? out_.lost_left : out_.lost_both);
+  }
+
   void advance(Timestamp time) {
     if (any_) {
       const std::uint64_t step = periods_between(last_, time, out_.period_ns);
@@ -71,18 +80,11 @@ class Pairer {
     last_ = time;
   }
 
-  void single(Timestamp time, std::size_t& lost) {
-    advance(time);
-    note_loss(time);
-    ++lost;
-  }
-
   void note_loss(Timestamp time) {
     if (out_.lost_left + out_.lost_right + out_.lost_both == 0) out_.first_lost = time;
   }
 
   void pair(const RecordedImage& left, const RecordedImage& right) {
-    advance(left.time);
     if (!out_.pairs.empty()) {
       const auto gap = static_cast<std::size_t>(seq_ - out_.pairs.back().seq - 1);
       if (gap > out_.longest_gap) {
@@ -111,8 +113,8 @@ Result<Pairing> pair_images(const Recording& recording) {
   Pairer(recording, out).run();
   if (!out.pairs.empty()) return out;
   return Error{ErrorCode::bad_input, recording.folder.string(),
-               "no left image (" + std::to_string(recording.left.size()) + ") has a right one (" +
-                   std::to_string(recording.right.size()) + ") of its time",
+               "no left image (" + std::to_string(count_present(recording.left)) + ") has a right one (" +
+                   std::to_string(count_present(recording.right)) + ") of its time",
                "the cameras' time stamps must agree to 5 ms and a quarter of the frame period"};
 }
 
@@ -150,16 +152,16 @@ Result<std::size_t> find_readable(std::size_t count, const std::string& place,
                "copy the recording again from where it was made"};
 }
 
-Result<> drop_absent(std::vector<RecordedImage>& images, const std::filesystem::path& folder) {
-  const std::size_t listed = images.size();
-  std::erase_if(images, [](const RecordedImage& image) {
+Result<> mark_absent(std::vector<RecordedImage>& images, const std::filesystem::path& folder) {
+  for (RecordedImage& image : images) {
     std::error_code ignored;
-    return !std::filesystem::is_regular_file(image.file, ignored);
-  });
-  if (!images.empty()) return Ok{};
-  return Error{ErrorCode::bad_input, folder.string(),
-               listed == 0 ? "holds no images" : "none of the " + std::to_string(listed) + " listed images is there",
-               "copy the images of this camera, or pass the folder that holds them"};
+    if (!std::filesystem::is_regular_file(image.file, ignored)) image.file.clear();
+  }
+  if (count_present(images) > 0) return Ok{};
+  return Error{
+      ErrorCode::bad_input, folder.string(),
+      images.empty() ? "holds no images" : "none of the " + std::to_string(images.size()) + " listed images is there",
+      "copy the images of this camera, or pass the folder that holds them"};
 }
 
 }  // namespace pelorus

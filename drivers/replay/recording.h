@@ -18,13 +18,13 @@ namespace pelorus {
 struct RecordedImage {
   std::int64_t index = 0;  // running number within the recording
   Timestamp time;
-  std::filesystem::path file;
+  std::filesystem::path file;  // empty: listed, but not there
 };
 
 struct Recording {
   std::string format;
   std::filesystem::path folder;
-  std::vector<RecordedImage> left;  // strictly increasing in time
+  std::vector<RecordedImage> left;  // all that there should be, strictly increasing in time
   std::vector<RecordedImage> right;
   std::vector<std::string> remarks;  // what a user must know about the listing
   // Deferred, because a user's calibration may replace it.
@@ -43,7 +43,7 @@ struct Pairing {
   std::int64_t period_ns = 0;   // nominal: median of the intervals; 0 for a single image
   std::size_t lost_left = 0;    // pairs lost because the left image is missing
   std::size_t lost_right = 0;   // ... the right one
-  std::size_t lost_both = 0;    // ... or both, seen as a step in time
+  std::size_t lost_both = 0;    // ... or both: listed without images, or seen as a step in time
   Timestamp first_lost;         // of the image whose partner is missing, or one period after the pair before
   std::size_t longest_gap = 0;  // pairs lost in a row
   Timestamp longest_gap_after;  // time stamp of the pair before that gap
@@ -71,7 +71,7 @@ struct OrderCure {
 [[nodiscard]] Result<std::size_t> find_readable(std::size_t count, const std::string& place,
                                                 const std::function<Result<>(std::size_t)>& decode);
 
-// Drops images whose file is not there (each is a lost pair). An Error when none is left.
-[[nodiscard]] Result<> drop_absent(std::vector<RecordedImage>& images, const std::filesystem::path& folder);
+// Empties the name of each file that is not there (its pair is lost). An Error when none is left.
+[[nodiscard]] Result<> mark_absent(std::vector<RecordedImage>& images, const std::filesystem::path& folder);
 
 }  // namespace pelorus

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <vector>
 
 #include "tests/drivers/replay/recording_fixture.h"
@@ -109,7 +110,7 @@ TEST_F(Dataset, ALineMissingInBothListsIsAGapInSeqToo) {
   const auto source = open(root);
   ASSERT_NE(source, nullptr);
   EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{0, 1, 4, 5, 6, 7}));
-  EXPECT_NE(source->description().find("2 never recorded"), std::string::npos) << source->description();
+  EXPECT_NE(source->description().find("2 without both"), std::string::npos) << source->description();
   EXPECT_EQ(source->missing_pairs().count, 2u);
   EXPECT_NEAR(static_cast<double>(source->missing_pairs().first.ns - time_ns(2)), 0, 1e6) << "no image tells it";
 }
@@ -120,6 +121,41 @@ TEST_F(Dataset, AMissingKittiImageIsAGapInSeq) {
   const auto source = open(root);
   ASSERT_NE(source, nullptr);
   EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{0, 1, 2, 3, 5, 6, 7}));
+}
+
+// The list of times tells how many pairs there should be, also where no image is before or after.
+TEST_F(Dataset, MissingPairsAtTheEndsOfAListAreCounted) {
+  const auto odometry_png = [](int i) { return "00000" + std::to_string(i) + ".png"; };
+  const auto raw_png = [](int i) { return "000000000" + std::to_string(i) + ".png"; };
+  struct Layout {
+    fs::path left, right;
+    std::function<std::string(int)> name;
+    fs::path root;
+  };
+  const fs::path odometry = kitti_odometry(), raw = kitti_raw(), rooms = euroc();
+  for (const Layout& layout : {Layout{odometry / "image_0", odometry / "image_1", odometry_png, odometry},
+                               Layout{raw / "image_00/data", raw / "image_01/data", raw_png, raw},
+                               Layout{rooms / "mav0/cam0/data", rooms / "mav0/cam1/data", png, rooms}}) {
+    for (const int both : {0, 1, kPairs - 1}) {
+      fs::remove(layout.left / layout.name(both));
+      fs::remove(layout.right / layout.name(both));
+    }
+    fs::remove(layout.right / layout.name(2));
+    fs::remove(layout.left / layout.name(kPairs - 2));
+    const auto source = open(layout.root);
+    ASSERT_NE(source, nullptr);
+    SourcePair pair;
+    ASSERT_TRUE(source->next(pair).value());
+    const Timestamp fourth = pair.capture_time;
+    EXPECT_EQ(pair.seq, 3u) << layout.root;
+    EXPECT_EQ(source->missing_pairs().count, 3u) << layout.root;
+    EXPECT_EQ(all_seqs(*source), (std::vector<std::uint64_t>{4, 5})) << layout.root;
+    EXPECT_EQ(source->missing_pairs().count, 5u) << layout.root;
+    EXPECT_LT(source->missing_pairs().first, fourth) << layout.root;
+    EXPECT_NE(source->description().find("(1 without left image, 1 without right image, 3 without both)"),
+              std::string::npos)
+        << source->description();
+  }
 }
 
 TEST_F(Dataset, ALongGapIsReported) {
@@ -222,6 +258,18 @@ TEST_F(Dataset, ACalibrationThatCannotBeNamesItsFile) {
   expect_error(odometry, "calib.txt:2", "negative baseline");
   write(odometry / "calib.txt", "P0: 60 0 31.5 0 0 60 23.5 0 0 0 1 0\n");
   expect_error(odometry, "calib.txt", "'P1' is missing");
+}
+
+TEST_F(Dataset, WithoutACalibrationTheCureNamesTheOptionForAnother) {
+  const fs::path odometry = kitti_odometry(), raw = kitti_raw(), rooms = euroc();
+  fs::remove(odometry / "calib.txt");
+  fs::remove(raw.parent_path() / "calib_cam_to_cam.txt");
+  fs::remove(rooms / "mav0/cam1/sensor.yaml");
+  for (const fs::path& recording : {odometry, raw, rooms}) {
+    const auto source = open_dataset(recording);
+    ASSERT_FALSE(source.ok());
+    EXPECT_NE(source.error().cure.find("--calib FILE"), std::string::npos) << source.error().message();
+  }
 }
 
 TEST_F(Dataset, TheUsersCalibrationReplacesABrokenOneAndKeepsTheBody) {
