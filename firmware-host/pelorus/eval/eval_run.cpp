@@ -14,6 +14,8 @@ Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calib
   judged.run = std::move(run.value());
   const Result<std::optional<StepTimes>> step_times = read_step_times(folder);
   if (!step_times) return step_times.error();
+  const Result<std::optional<LostPairs>> lost = read_lost_pairs(folder);
+  if (!lost) return lost.error();
   if (!dataset.empty()) {
     Result<std::optional<Truth>> truth = read_truth(dataset, calibration_file, judged.run);
     if (!truth) return truth.error();
@@ -27,6 +29,7 @@ Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calib
   result.dataset = dataset;
   result.folder = folder.string();
   result.step_times = step_times.value();
+  result.lost = lost.value();
   result.incomplete = incomplete_reason(folder);
   if (!judged.truth) {
     result.evaluation.facts = run_facts(judged.run);

@@ -9,6 +9,7 @@
 #include "core/base/result.h"
 #include "core/evaluation/evaluation.h"
 #include "firmware-host/pelorus/eval/eval_goals.h"
+#include "firmware-host/pelorus/results/lost_pairs.h"
 #include "firmware-host/pelorus/results/result_reader.h"
 
 namespace pelorus {
@@ -18,6 +19,7 @@ struct RunEvaluation {
   std::string folder;
   Evaluation evaluation;  // without truth: the facts only
   std::optional<StepTimes> step_times;
+  std::optional<LostPairs> lost;  // absent where the run does not tell
   bool has_truth = false;
   bool exact_truth = false;
   bool scale_known = true;

@@ -54,8 +54,9 @@ std::string facts_text(const RunEvaluation& run) {
   const RunFacts& facts = run.evaluation.facts;
   std::string text = "Run    " + run.folder + "\n";
   if (run.incomplete) text += "       INCOMPLETE: " + *run.incomplete + "\n";
-  text += format("       %zu frames, %zu with a pose, %zu missing, resets %d;", facts.frames, facts.frames_with_pose,
-                 facts.frames_missed, facts.resets);
+  const std::string lost = run.lost ? to_text(*run.lost) : std::to_string(facts.frames_missed) + " in gaps";
+  text += format("       %zu stepped, %s, %zu with a pose\n       resets %d;", facts.frames, lost.c_str(),
+                 facts.frames_with_pose, facts.resets);
   for (std::size_t i = 0; i < facts.states.size(); ++i) {
     if (facts.states[i] > 0) text += format(" %s %zu", to_text(static_cast<VisionState>(i)), facts.states[i]);
   }

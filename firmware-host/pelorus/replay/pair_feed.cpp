@@ -45,9 +45,9 @@ Result<bool> PairFeed::next_readable(SourcePair& pair) {
     Result<bool> more = source_.next(pair);
     if (more.ok()) return more;
     if (!first_unreadable_) first_unreadable_ = more.error();
+    ++unreadable_;
     broke_off_ = in_a_row == kBridgedPairs && read_ > 0;
     if (broke_off_) return more;
-    ++unreadable_;
     if (options_.warn) options_.warn(more.error());
   }
 }

@@ -79,8 +79,9 @@ Verb add_replay(CLI::App& app) {
   CLI::App* parser = app.add_subcommand("replay", "Recorded frames through the pipeline into result files");
   parser->add_option("DATASET", arguments->dataset, kDatasetHelp)->required();
   parser
-      ->add_option("--out", arguments->out,
-                   "Output folder: camera.tum, objects.csv, frames.csv, timing.csv, points.csv, outlines.csv")
+      ->add_option(
+          "--out", arguments->out,
+          "Output folder: camera.tum, objects.csv, frames.csv, timing.csv, points.csv, outlines.csv, lost_pairs.csv")
       ->required();
   parser->add_option("--calib", arguments->calibration, "Calibration file instead of the data set's own");
   parser->add_option("--config", arguments->configs, "Settings file (config/pelorus.yaml); several apply in turn")
@@ -97,7 +98,8 @@ Verb add_replay(CLI::App& app) {
       "Exit codes: 0 done, 2 usage, 3 bad input, or done without pairs that the recording lacks or that are damaged,\n"
       "4 calibration, 5 configuration, 6 output, 8 the recording broke off, 130 interrupted.\n"
       "Missing and damaged pairs are told of, and the run goes on; a single one makes the exit code 3. Four damaged\n"
-      "pairs in a row are the end (8), but not at the start. Until a run has come to its end its folder holds a file\n"
+      "pairs in a row are the end (8), but not before the first good one: these are skipped, however many. Until a run "
+      "has come to its end its folder holds a file\n"
       "INCOMPLETE with the reason; what was processed before an error is kept.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }

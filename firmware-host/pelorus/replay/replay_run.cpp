@@ -38,9 +38,8 @@ class SummaryCounter {
   }
 
   [[nodiscard]] ReplaySummary finish(const PairFeed& feed, std::optional<Error> failure) {
-    summary_.dropped = feed.dropped();
-    summary_.missing = feed.missing();
-    summary_.unreadable = feed.unreadable();
+    summary_.lost = {feed.missing().count, feed.unreadable(), feed.dropped()};
+    summary_.first_missing = feed.missing().first;
     summary_.objects_confirmed = static_cast<int>(confirmed_.size());
     std::sort(step_us_.begin(), step_us_.end());
     summary_.median_step_ms = quantile_ms(0.5);
@@ -148,7 +147,13 @@ Result<ReplaySummary> replay_marked(StereoSource& source, const ReplayOptions& o
   std::optional<Error> failure;
   if (!finished) failure = finished.error();
   if (!outcome) failure = outcome.error();
-  return counter.finish(feed, std::move(failure));
+  ReplaySummary summary = counter.finish(feed, std::move(failure));
+  const Result<> told = write_lost_pairs(options.out_folder, summary.lost);
+  if (!told && !summary.ended_early) {
+    summary.ended_early = true;
+    summary.failure = told.error();
+  }
+  return summary;
 }
 
 // Why the files hold less than the whole run; empty when they hold it.
@@ -177,18 +182,19 @@ Result<ReplaySummary> run_replay(StereoSource& source, const ReplayOptions& opti
 }
 
 bool is_incomplete(const ReplaySummary& summary) {
-  return !summary.ended_early && !summary.interrupted && summary.unreadable + summary.missing.count > 0;
+  return !summary.ended_early && !summary.interrupted && summary.lost.unreadable + summary.lost.missing > 0;
 }
 
 std::string skipped_text(const Error& error) { return "pelorus: pair skipped: " + error.message(); }
 
 std::string incomplete_text(const ReplaySummary& summary) {
   std::string text = "pelorus: finished, but ";
-  if (summary.unreadable > 0) text += pairs_text(summary.unreadable) + " of the recording could not be read";
-  if (summary.missing.count == 0) return text;
-  if (summary.unreadable > 0) text += ", and ";
-  return text + pairs_text(summary.missing.count) + " of the recording " + (summary.missing.count == 1 ? "is" : "are") +
-         " missing, the first at " + std::to_string(summary.missing.first.ns) + " ns";
+  const LostPairs& lost = summary.lost;
+  if (lost.unreadable > 0) text += pairs_text(lost.unreadable) + " of the recording could not be read";
+  if (lost.missing == 0) return text;
+  if (lost.unreadable > 0) text += ", and ";
+  return text + pairs_text(lost.missing) + " of the recording " + (lost.missing == 1 ? "is" : "are") +
+         " missing, the first at " + std::to_string(summary.first_missing.ns) + " ns";
 }
 
 std::string to_text(const ReplaySummary& summary) {
@@ -199,9 +205,8 @@ std::string to_text(const ReplaySummary& summary) {
     text += line.data();
   };
   using ull = unsigned long long;
-  add("frames   %llu stepped, %llu missing in the recording, %llu unreadable, %llu dropped, %llu without a pose\n",
-      static_cast<ull>(summary.frames), static_cast<ull>(summary.missing.count), static_cast<ull>(summary.unreadable),
-      static_cast<ull>(summary.dropped), static_cast<ull>(summary.without_pose));
+  add("frames   %llu stepped, %s, %llu without a pose\n", static_cast<ull>(summary.frames),
+      to_text(summary.lost).c_str(), static_cast<ull>(summary.without_pose));
   text += "states  ";
   for (std::size_t i = 0; i < summary.states.size(); ++i) {
     if (summary.states[i] == 0) continue;

@@ -14,6 +14,7 @@
 #include "core/model/stage_data.h"
 #include "core/pipeline/config.h"
 #include "drivers/stereo_source.h"
+#include "firmware-host/pelorus/results/lost_pairs.h"
 
 namespace pelorus {
 
@@ -31,9 +32,8 @@ struct ReplayOptions {
 
 struct ReplaySummary {
   std::uint64_t frames = 0;               // steps made
-  std::uint64_t unreadable = 0;           // pairs with a damaged image
-  MissingPairs missing;                   // pairs the recording lacks
-  std::uint64_t dropped = 0;              // real-time mode: pairs skipped because the step was late
+  LostPairs lost;                         // pairs of the recording that were not stepped
+  Timestamp first_missing;                // capture time, when lost.missing > 0
   std::uint64_t without_pose = 0;         // frames that camera.tum lacks
   std::array<std::uint64_t, 7> states{};  // frames per VisionState
   int resets = 0;                         // reset_counter of the last frame

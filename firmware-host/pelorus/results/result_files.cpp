@@ -97,7 +97,7 @@ Result<Ok> remove_earlier_run(const fs::path& folder) {
   const ResultPaths paths(folder);
   std::error_code error;
   for (const fs::path& path : {paths.camera, paths.objects, paths.frames, paths.timing, paths.points, paths.outlines,
-                               paths.overlay, paths.report, paths.incomplete}) {
+                               paths.lost_pairs, paths.overlay, paths.report, paths.incomplete}) {
     fs::remove_all(path, error);
     if (error) return io_error(path, "cannot remove the earlier run: " + error.message(), "choose another --out");
   }

@@ -31,6 +31,7 @@ struct ResultPaths {
         timing(folder / "timing.csv"),
         points(folder / "points.csv"),
         outlines(folder / "outlines.csv"),
+        lost_pairs(folder / "lost_pairs.csv"),
         incomplete(folder / "INCOMPLETE"),
         overlay(folder / "overlay"),
         report(folder / "report.html") {}
@@ -40,6 +41,7 @@ struct ResultPaths {
   std::filesystem::path timing;
   std::filesystem::path points;
   std::filesystem::path outlines;
+  std::filesystem::path lost_pairs;
   std::filesystem::path incomplete;  // IncompleteMark
   std::filesystem::path overlay;
   std::filesystem::path report;

@@ -94,7 +94,8 @@ TEST(CommandLine, ReplayThenEvalOfASceneGivesTableAndJson) {
   const Outcome replay = run_tool("replay " + scene + " --out " + out);
   ASSERT_EQ(replay.exit_code, 0) << replay.text;
   EXPECT_NE(replay.text.find("4 stepped"), std::string::npos) << replay.text;
-  for (const char* name : {"camera.tum", "objects.csv", "frames.csv", "timing.csv", "points.csv", "outlines.csv"}) {
+  for (const char* name :
+       {"camera.tum", "objects.csv", "frames.csv", "timing.csv", "points.csv", "outlines.csv", "lost_pairs.csv"}) {
     EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(out) / name)) << name;
   }
   const Outcome json = run_tool("eval " + scene + " " + out + " --json");
@@ -123,7 +124,7 @@ TEST(CommandLine, EvalWithoutTruthSaysWhatItCanAndFails) {
   std::filesystem::remove_all(std::filesystem::path(dive) / "mav0" / "state_groundtruth_estimate0");
   const Outcome outcome = run_tool("eval " + dive + " " + out);
   EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.text.find("3 frames"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("3 stepped"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("no truth"), std::string::npos) << outcome.text;
 }
 

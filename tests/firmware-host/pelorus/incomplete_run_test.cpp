@@ -142,13 +142,47 @@ TEST_F(IncompleteRun, ADamagedFirstImageIsSkippedAndTheCodeIsThree) {
   EXPECT_TRUE(holds(outcome.text, "finished, but 1 pair of the recording could not be read\n")) << outcome.text;
 }
 
+TEST_F(IncompleteRun, DamagedPairsAtTheStartAreSkippedHoweverMany) {
+  render(8);
+  for (int frame = 0; frame < 5; ++frame) spoil(frame % 2, frame);
+  const Outcome outcome = replay();
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.text;
+  EXPECT_TRUE(holds(outcome.text, "3 stepped, 0 missing in the recording, 5 unreadable, 0 dropped")) << outcome.text;
+  EXPECT_FALSE(fs::exists(out_ / "INCOMPLETE"));
+}
+
+// Damaged in the middle and at the end, missing at the start and at the end: not all of them leave a gap between
+// frames.
+TEST_F(IncompleteRun, EvalTellsTheNumbersThatReplayTold) {
+  render(12);
+  fs::remove(image(0, 0));
+  for (const int frame : {4, 5, 9}) spoil(1, frame);
+  fs::remove(image(0, 11));
+  fs::remove(image(1, 11));
+  const std::string numbers = "7 stepped, 2 missing in the recording, 3 unreadable, 0 dropped";
+  const Outcome replayed = replay();
+  EXPECT_EQ(replayed.exit_code, 3);
+  EXPECT_TRUE(holds(replayed.text, numbers)) << replayed.text;
+  const std::string run = dive_.string() + " " + out_.string();
+  const Outcome table = tool("eval " + run);
+  EXPECT_TRUE(holds(table.text, numbers)) << table.text;
+  const Outcome json = tool("eval --json " + run);
+  EXPECT_TRUE(holds(json.text, "\"frames_missing\":2,\"frames_unreadable\":3,\"frames_dropped\":0")) << json.text;
+  fs::remove(out_ / "lost_pairs.csv");
+  EXPECT_TRUE(holds(tool("eval " + run).text, "7 stepped, 3 in gaps")) << "as of a run that was killed";
+  write_text(out_ / "lost_pairs.csv", "missing,unreadable,dropped\n1,x,0\n");
+  const Outcome damaged = tool("eval " + run);
+  EXPECT_EQ(damaged.exit_code, 3);
+  EXPECT_TRUE(holds(damaged.text, "lost_pairs.csv:2")) << damaged.text;
+}
+
 TEST_F(IncompleteRun, ARecordingThatBreaksOffHasACodeOfItsOwn) {
   render(10);
   for (int frame = 4; frame < 10; ++frame) spoil(0, frame);
   const Outcome outcome = replay();
   EXPECT_EQ(outcome.exit_code, 8) << outcome.text;
   EXPECT_TRUE(holds(outcome.text, "the recording broke off")) << outcome.text;
-  EXPECT_TRUE(holds(outcome.text, "4 stepped")) << outcome.text;
+  EXPECT_TRUE(holds(outcome.text, "4 stepped, 0 missing in the recording, 4 unreadable")) << outcome.text;
   expect_told("the recording broke off: ");
   EXPECT_EQ(tool("ablate " + dive_.string() + " --only net_filter").exit_code, 8);
 }

@@ -77,7 +77,7 @@ TEST(RunReplay, SteppedModeTakesEveryPair) {
   const Result<ReplaySummary> summary = run_replay(source, options_for(folder));
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 5U);
-  EXPECT_EQ(summary.value().dropped, 0U);
+  EXPECT_EQ(summary.value().lost.dropped, 0U);
   EXPECT_EQ(frames_written(folder), 5);
 }
 
@@ -103,8 +103,8 @@ TEST(RunReplay, FewDamagedPairsAreToldOfAndBridged) {
   const Result<ReplaySummary> summary = run_replay(source, options);
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 7U);
-  EXPECT_EQ(summary.value().unreadable, 3U);
-  EXPECT_EQ(summary.value().missing.count, 0U) << "not counted twice";
+  EXPECT_EQ(summary.value().lost.unreadable, 3U);
+  EXPECT_EQ(summary.value().lost.missing, 0U) << "not counted twice";
   EXPECT_EQ(warnings, 3);
   ASSERT_TRUE(summary.value().failure.has_value());
   EXPECT_EQ(summary.value().failure->place, "frame 4") << "the first one names the cause";
@@ -120,8 +120,8 @@ TEST(RunReplay, DamagedPairsAtTheStartAreSkippedHoweverMany) {
   const Result<ReplaySummary> summary = run_replay(source, options_for(folder));
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 5U);
-  EXPECT_EQ(summary.value().unreadable, 6U);
-  EXPECT_EQ(summary.value().missing.count, 1U) << "the pair that was never recorded is still told of";
+  EXPECT_EQ(summary.value().lost.unreadable, 6U);
+  EXPECT_EQ(summary.value().lost.missing, 1U) << "the pair that was never recorded is still told of";
   EXPECT_FALSE(summary.value().ended_early);
   ASSERT_TRUE(summary.value().failure.has_value());
   EXPECT_EQ(summary.value().failure->place, "frame 0");
@@ -173,8 +173,8 @@ TEST(RunReplay, PairMissingInTheRecordingIsCounted) {
   const Result<ReplaySummary> summary = run_replay(source, options_for(folder));
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 4U);
-  EXPECT_EQ(summary.value().missing.count, 1U);
-  EXPECT_EQ(summary.value().missing.first.ns, 3000);
+  EXPECT_EQ(summary.value().lost.missing, 1U);
+  EXPECT_EQ(summary.value().first_missing.ns, 3000);
   EXPECT_TRUE(is_incomplete(summary.value()));
   EXPECT_FALSE(incomplete_reason(folder.path()).has_value()) << "the run itself is whole";
 }
@@ -189,8 +189,8 @@ TEST(RunReplay, RealTimeModeLetsTheNewestPairWinAndCountsTheDropped) {
   const Result<ReplaySummary> summary = run_replay(source, options);
   ASSERT_TRUE(summary.ok());
   EXPECT_EQ(summary.value().frames, 2U);
-  EXPECT_EQ(summary.value().dropped, 4U);
-  EXPECT_EQ(summary.value().missing.count, 0U);
+  EXPECT_EQ(summary.value().lost.dropped, 4U);
+  EXPECT_EQ(summary.value().lost.missing, 0U);
   EXPECT_FALSE(is_incomplete(summary.value())) << "being late is no fault of the recording";
 }
 

@@ -23,7 +23,9 @@ function showSummary(run) {
   const {evaluation} = run;
   const seconds = run.frames.time_s.length ? run.states.at(-1).to_s : 0;
   fact('Frames', String(evaluation.frames), `${figure(seconds)} s, ${evaluation.frames_with_pose} with a pose`);
-  fact('Missing frames, resets', `${evaluation.frames_missing}, ${evaluation.resets}`);
+  const {frames_unreadable: unreadable, frames_dropped: dropped} = evaluation;
+  fact('Missing pairs, resets', `${evaluation.frames_missing}, ${evaluation.resets}`,
+    unreadable === null ? '' : `${unreadable} unreadable, ${dropped} dropped`);
   const confirmed = evaluation.confirmed_object_ids;
   fact('Objects confirmed', String(confirmed.length), confirmed.map((id) => `#${id}`).join(' '));
   if (run.latency) {
