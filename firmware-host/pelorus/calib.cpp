@@ -36,9 +36,15 @@ struct CheckArguments {
 struct ConvertArguments {
   std::string input;
   std::string out;
-  CalibrationFormat format = CalibrationFormat::opencv;
+  std::string format;
   bool overwrite = false;
 };
+
+// By the words of --to.
+const std::map<std::string, CalibrationFormat> kFormats{{"opencv", CalibrationFormat::opencv},
+                                                        {"kalibr", CalibrationFormat::kalibr},
+                                                        {"ros", CalibrationFormat::ros},
+                                                        {"euroc", CalibrationFormat::euroc}};
 
 constexpr double degrees(double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; }
 
@@ -213,8 +219,8 @@ Result<int> run_convert(const ConvertArguments& arguments) {
     if (!source) return source.error();
     loaded.value().calibration = source.value()->calibration();
   }
-  if (auto written =
-          write_calibration(loaded.value().calibration, arguments.format, arguments.out, arguments.overwrite);
+  if (auto written = write_calibration(loaded.value().calibration, kFormats.at(arguments.format), arguments.out,
+                                       arguments.overwrite);
       !written)
     return written.error();
   std::printf("calibration %s\n", loaded.value().origin.c_str());
@@ -247,13 +253,11 @@ Verb add_calib(CLI::App& app) {
   auto convert_arguments = std::make_shared<ConvertArguments>();
   CLI::App* convert = parser->add_subcommand("convert", "Write a calibration in another format");
   convert->add_option("INPUT", convert_arguments->input, "Any calibration or data set that check reads")->required();
-  const std::map<std::string, CalibrationFormat> formats{{"opencv", CalibrationFormat::opencv},
-                                                         {"kalibr", CalibrationFormat::kalibr},
-                                                         {"ros", CalibrationFormat::ros},
-                                                         {"euroc", CalibrationFormat::euroc}};
+  std::vector<std::string> formats;
+  for (const auto& [word, format] : kFormats) formats.push_back(word);
   convert->add_option("--to", convert_arguments->format, "opencv, kalibr (files), ros, euroc (folders)")
       ->required()
-      ->transform(CLI::CheckedTransformer(formats));
+      ->check(one_of(formats));
   convert->add_option("--out", convert_arguments->out, "File or folder to write")->required();
   convert->add_flag("--overwrite", convert_arguments->overwrite, "Replace what is there under this name");
   convert->footer("Exit codes: 0 written, 2 usage, 4 calibration, 6 input/output.");

@@ -113,7 +113,7 @@ Verb add_command(CLI::App& app) {
                    "reset: the world starts anew; standby, resume: rest and work; snapshot: a picture on "
                    "VIS_IMAGE_LEFT; record_start, record_stop: the recorder")
       ->required()
-      ->check(CLI::IsMember({"reset", "standby", "resume", "snapshot", "record_start", "record_stop"}));
+      ->check(one_of({"reset", "standby", "resume", "snapshot", "record_start", "record_stop"}));
   arguments->bus.add_to(*parser);
   parser->add_option("--timeout", arguments->timeout_s, "How long to wait for the answer [s]")
       ->check(CLI::Range(0.0, 3600.0))

@@ -117,7 +117,7 @@ Verb add_export(CLI::App& app) {
                    "tum, kitti (poses, and PATH.times), csv (camera and bodies), mcap,\n"
                    "ply (point clouds: the scene, and each body in its own frame)")
       ->required()
-      ->check(CLI::IsMember({"tum", "kitti", "csv", "mcap", "ply"}));
+      ->check(one_of({"tum", "kitti", "csv", "mcap", "ply"}));
   parser->add_option("--out", arguments->out, "File to write (ply: folder); without: a name by the format in OUT");
   parser
       ->add_option("--body", arguments->body,

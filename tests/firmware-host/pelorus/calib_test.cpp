@@ -105,6 +105,18 @@ TEST_F(Calib, TheImagesTellTheSizeThatTheCalibrationLacks) {
   EXPECT_NE(test::read_text(out).find("[64, 48]"), std::string::npos) << test::read_text(out);
 }
 
+TEST_F(Calib, AnUnknownFormatIsToldWithTheKnownOnes) {
+  CLI::App app{"test"};
+  const Verb verb = add_calib(app);
+  std::vector<std::string> arguments{"x", "--out", "foo", "--to", "x", "convert", "calib"};
+  try {
+    app.parse(arguments);
+    FAIL() << "foo is a format";
+  } catch (const CLI::ParseError& e) {
+    EXPECT_STREQ(e.what(), "--to: 'foo' is unknown (give one of: euroc, kalibr, opencv, ros)");
+  }
+}
+
 TEST_F(Calib, ExitCodesTellWhatWasWrong) {
   const fs::path root = euroc();
   EXPECT_EQ(run({"calib"}), 2);
