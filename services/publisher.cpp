@@ -26,6 +26,8 @@ const char* to_text(StateReason reason) {
       return "pictures frozen";
     case StateReason::calibration:
       return "calibration";
+    case StateReason::exchanged_sides:
+      return "left and right pictures exchanged";
     case StateReason::commanded:
       return "commanded";
   }

@@ -23,6 +23,7 @@ enum class StateReason : std::uint8_t {
   no_pictures,       // CAMERA_FAULT
   frozen_pictures,   // CAMERA_FAULT
   calibration,       // CALIBRATION_FAULT
+  exchanged_sides,   // CALIBRATION_FAULT: left is right and right is left
   commanded          // STANDBY
 };
 [[nodiscard]] const char* to_text(StateReason reason);

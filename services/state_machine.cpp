@@ -42,6 +42,10 @@ void settle_state(const Circumstances& c, Publication& publication) {
       publication.reason = StateReason::starting;
       return;
     case VisionState::lost:
+      // Not cured by waiting, as other losses are: the autopilot, which hears no reason, hears another state.
+      if (c.sides_exchanged) {
+        return settle_invalid(publication, VisionState::calibration_fault, StateReason::exchanged_sides);
+      }
       return settle_invalid(publication, VisionState::lost, StateReason::few_points);
     case VisionState::degraded:
       publication.reason = result.world_ambiguous ? StateReason::ambiguous_world : StateReason::few_points;

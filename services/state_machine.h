@@ -11,7 +11,8 @@ namespace pelorus {
 struct Circumstances {
   bool standby = false;
   bool calibration_fits = true;
-  bool pictures = true;  // false: none came in time
+  bool pictures = true;          // false: none came in time
+  bool sides_exchanged = false;  // found while LOST, see VisionControl
   CaptureVerdict capture{};
   std::uint64_t pairs_missed = 0;  // captured since the last result, but not used
 };

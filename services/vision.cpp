@@ -111,6 +111,7 @@ Circumstances Vision::look(const StereoPair& pair) {
   any_pair_ = true;
   if (c.pairs_missed > 0) pairs_missed_.add(c.pairs_missed);
   c.standby = parts_.control.standby.load(std::memory_order_relaxed);
+  c.sides_exchanged = parts_.control.sides_exchanged.load(std::memory_order_relaxed);
   c.capture = watch_.look(pair.capture_time, pair.arrival, pair.left(), pair.right());
   frame_timeout_.learn(c.capture.capture_time, step);
   if (c.capture.time_jumped) time_jumps_.add();

@@ -27,8 +27,10 @@ ExchangedSides::ExchangedSides(VisionControl& control, Mailbox<SourcePair>& lost
 }
 
 bool ExchangedSides::look(VisionState state, Clock::time_point now) {
-  if (state != VisionState::lost) {
+  const bool told = state == VisionState::calibration_fault && control_.sides_exchanged.load();
+  if (state != VisionState::lost && !told) {
     lost_ = false;
+    control_.sides_exchanged.store(false);
     return false;
   }
   if (!lost_) {
@@ -49,6 +51,7 @@ bool ExchangedSides::look(VisionState state, Clock::time_point now) {
       next_ask_ = now + kPatience;  // the pair that confirms it is not waited for in the pauses of darkness
     }
     decided_ = sides == Sides::as_given || exchanged_ == kPairsToBelieve;
+    control_.sides_exchanged.store(exchanged_ == kPairsToBelieve);
     return exchanged_ == kPairsToBelieve;
   }
   if (now < next_ask_) return false;

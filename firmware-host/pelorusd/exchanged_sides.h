@@ -1,7 +1,8 @@
 #pragma once
 // ExchangedSides: why nothing is found in good pictures. Live cameras whose left and right are exchanged (names,
 // cables, addresses) give no pose, only LOST; here pairs that ended so are asked for and matched both ways
-// (runtime/side_check.h). Recorded pictures are checked before the start. Thread-bound to the main thread; a check
+// (runtime/side_check.h). Once found, vision calls LOST a CALIBRATION_FAULT, until a pair ends otherwise. Recorded
+// pictures are checked before the start. Thread-bound to the main thread; a check
 // takes some 0.1 s, and happens only while LOST lasts and nothing is known: after 1, 2, 4 s and so on, in the end each
 // 60 s.
 

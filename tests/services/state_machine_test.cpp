@@ -56,6 +56,15 @@ TEST(StateMachine, WhatHasNoEstimateIsInvalid) {
   expect_invalid(settled({}, VisionState::lost), VisionState::lost, StateReason::few_points);
 }
 
+TEST(StateMachine, ExchangedSidesAreTheReasonOfALossAndOfNothingElse) {
+  const Circumstances exchanged{.sides_exchanged = true};
+  expect_invalid(settled(exchanged, VisionState::lost), VisionState::calibration_fault, StateReason::exchanged_sides);
+  EXPECT_EQ(settled(exchanged).result.state, VisionState::tracking) << "a pose says that they are not";
+  EXPECT_EQ(settled(exchanged, VisionState::init).result.state, VisionState::init);
+  expect_invalid(settled({.pictures = false, .sides_exchanged = true}), VisionState::camera_fault,
+                 StateReason::no_pictures);
+}
+
 TEST(StateMachine, StandbyIsStrongerThanAnyFault) {
   expect_invalid(settled({.standby = true, .calibration_fits = false, .pictures = false}), VisionState::standby,
                  StateReason::commanded);

@@ -65,6 +65,19 @@ TEST_F(ExchangedSidesBench, TwoPairsAreNeededToBelieveAndItIsToldOnceInATimeOfLo
   EXPECT_EQ(pass(seconds(10), Shown::exchanged), 1) << "LOST again";
 }
 
+// The state that follows from it does not end it; any other does.
+TEST_F(ExchangedSidesBench, VisionIsToldUntilAPairEndsOtherwise) {
+  EXPECT_EQ(pass(seconds(2), Shown::exchanged), 0);
+  EXPECT_FALSE(control_.sides_exchanged.load());
+  EXPECT_EQ(pass(seconds(1), Shown::exchanged), 1);
+  EXPECT_TRUE(control_.sides_exchanged.load());
+  EXPECT_EQ(pass(seconds(300), Shown::exchanged, VisionState::calibration_fault), 0);
+  EXPECT_TRUE(control_.sides_exchanged.load());
+  EXPECT_EQ(asked_.size(), 2U) << "known, and asked on";
+  EXPECT_FALSE(sides_.look(VisionState::tracking, now_));
+  EXPECT_FALSE(control_.sides_exchanged.load());
+}
+
 TEST_F(ExchangedSidesBench, OnePairThatMatchesAsGivenEndsIt) {
   EXPECT_EQ(pass(seconds(2), Shown::exchanged), 0);
   show(Shown::as_given);

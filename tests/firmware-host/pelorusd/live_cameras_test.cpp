@@ -2,6 +2,7 @@
 // process of its own, a listener on LCM. The cameras show a rendered dive, there and back again.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -134,11 +135,17 @@ TEST_F(LiveCameras, ALeftCameraThatIsLostIsAFaultWithinFivePairsAndItsReturnEnds
   finish();
 }
 
-TEST_F(LiveCameras, ExchangedOnesGiveNoPoseAndTheLogSaysWhy) {
+TEST_F(LiveCameras, ExchangedOnesGiveNoPoseAndStateAndLogSayWhy) {
   begin(16, kAddress[1], kAddress[0]);
   ASSERT_TRUE(service_->wait_for_state("LOST", "few points")) << service_->log();
   const auto told = [&] { return service_->log().find("pictures are exchanged") != std::string::npos; };
   EXPECT_TRUE(service_->odom.wait(told, 20)) << service_->log();
+  EXPECT_TRUE(service_->wait_for_state("CALIBRATION_FAULT", "left and right pictures exchanged")) << service_->log();
+  const auto in_health = [&] {
+    return std::any_of(service_->health.messages.begin(), service_->health.messages.end(),
+                       [](const vis_health_t& m) { return m.reason_text == "left and right pictures exchanged"; });
+  };
+  EXPECT_TRUE(service_->health.wait(in_health, 5)) << service_->log();
   // The first pair is the origin, whatever it shows.
   for (const vis_odom_t& m : service_->odom.messages) {
     EXPECT_TRUE(!m.pose_valid || m.state_text == "INIT") << m.seq << " " << m.state_text;
