@@ -112,7 +112,8 @@ void V4l2Camera::count_exposures(std::uint32_t sequence) {
 FrameOutcome V4l2Camera::wait_in_vain() {
   counters_.timeouts.add();
   const auto now = std::chrono::steady_clock::now();
-  if (now - last_buffer_ < milliseconds(config_.watchdog_s * 1000)) return FrameOutcome::timeout;
+  const double rate_hz = device_.format().rate_hz > 0 ? device_.format().rate_hz : config_.rate_hz;
+  if (now - last_buffer_ < dequeue_limit(config_.watchdog_s, rate_hz)) return FrameOutcome::timeout;
   restarts_.add();
   device_.stop();
   if (!device_.start(config_.buffers)) return give_up();

@@ -15,7 +15,7 @@ struct V4l2Config {
   double exposure_ms = 0;  // also switches automatic exposure off
   double readout_ms = 0;   // from the end of exposure to the last pixel, for devices that stamp that one
   int buffers = 4;
-  double watchdog_s = 0.75;  // without a frame: the stream is stopped and started again
+  double watchdog_s = 0.75;  // without a frame, at least: see dequeue_limit()
 };
 
 }  // namespace pelorus

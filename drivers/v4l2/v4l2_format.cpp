@@ -1,6 +1,8 @@
 #include "drivers/v4l2/v4l2_format.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 
 namespace pelorus {
 namespace {
@@ -55,6 +57,12 @@ PixelFormat pixel_format(std::uint32_t code) {
     default:
       return PixelFormat::unknown;
   }
+}
+
+Duration dequeue_limit(double least_s, double rate_hz) {
+  constexpr double kPeriods = 3;
+  const double limit_s = rate_hz > 0 ? std::max(least_s, kPeriods / rate_hz) : least_s;
+  return Duration(std::llround(limit_s * 1e9));
 }
 
 FrameTime frame_time(const v4l2_buffer& buffer, const ExposureTiming& timing, const CaptureClock& clock,

@@ -30,6 +30,10 @@ struct FrameTime {
   bool corrected = false;  // the stamp lay in the future or long ago: the arrival was taken
 };
 
+// How long a stream may be silent before it is restarted: `least_s`, but three periods of a slow camera, which is not
+// silent because its next picture is not due yet. `rate_hz` 0 = unknown.
+[[nodiscard]] Duration dequeue_limit(double least_s, double rate_hz);
+
 // Mid-exposure of a dequeued buffer from its stamp, its clock (V4L2_BUF_FLAG_TIMESTAMP_*) and the moment that was
 // stamped (V4L2_BUF_FLAG_TSTAMP_SRC_*: start of exposure, or end of frame = last pixel received).
 [[nodiscard]] FrameTime frame_time(const v4l2_buffer& buffer, const ExposureTiming& timing, const CaptureClock& clock,

@@ -66,6 +66,14 @@ TEST_F(FrameTimeTest, CopiedStampsAreTakenWhenTheyCanBe) {
   EXPECT_EQ(time(24h, V4L2_BUF_FLAG_TIMESTAMP_COPY).source, TimeSource::arrival);
 }
 
+TEST(DequeueLimit, ASlowCameraHasThreePeriods) {
+  EXPECT_EQ(dequeue_limit(0.75, 25), 750ms);
+  EXPECT_EQ(dequeue_limit(0.75, 4), 750ms);
+  EXPECT_EQ(dequeue_limit(0.75, 1), 3s);
+  EXPECT_EQ(dequeue_limit(0.75, 0.5), 6s);
+  EXPECT_EQ(dequeue_limit(0.75, 0), 750ms) << "rate unknown";
+}
+
 TEST(Fourcc, NamesAndCodesAreTwoFormsOfOne) {
   for (const char* name :
        {"GREY", "Y10 ", "Y12 ", "Y16 ", "YUYV", "UYVY", "NV12", "MJPG", "BA81", "GBRG", "GRBG", "RGGB"}) {
