@@ -10,6 +10,10 @@
 namespace pelorus {
 namespace {
 
+constexpr double kLeastVariance = 0.01;       // of what the pairs state
+constexpr double kLeastCurvature = 0.1;       // of a far point, so that a bad fit's covariance is wide, not negative
+constexpr std::size_t kEnoughForScores = 60;  // points, for a covariance of six unknowns by their scatter
+
 // One point's contribution to the reduced normal equations.
 struct PointTerm {
   Eigen::Vector3d r_prev, r_curr;  // measured - predicted [px]
@@ -45,6 +49,8 @@ double robust_weight(double chi2, double scale) {
 struct Normal {
   Matrix6d information = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
+  Matrix6d curvature = Matrix6d::Zero();  // of the robust cost, points at rest
+  Matrix6d scores = Matrix6d::Zero();     // sum of the points' gradients, each times its transpose
   double weighted_chi2 = 0;
   double weight_sum = 0;
 };
@@ -66,10 +72,25 @@ void accumulate(const StereoRig& rig, const Rigid3& H, const PointPair& pair, do
   const Eigen::Matrix3d V_inv = (Eigen::Matrix3d::Identity() + term.A.transpose() * term.A).inverse();
   const Eigen::Matrix<double, 6, 3> coupling = term.B.transpose() * term.A;
   const Eigen::Matrix<double, 6, 3> W = coupling * V_inv;
-  normal.information += w_px * (term.B.transpose() * term.B - W * coupling.transpose());
-  normal.gradient += w_px * (term.B.transpose() * term.r_curr - W * (term.r_prev + term.A.transpose() * term.r_curr));
+  const Matrix6d own = w_px * (term.B.transpose() * term.B - W * coupling.transpose());
+  const Vector6d score =
+      w_px * (term.B.transpose() * term.r_curr - W * (term.r_prev + term.A.transpose() * term.r_curr));
+  normal.information += own;
+  normal.gradient += score;
+  // Second derivative of Geman-McClure's kernel, mean over the three directions of the residual.
+  const double s = term.chi2 / robust_chi2;
+  normal.curvature += std::max(kLeastCurvature, 1.0 - 4.0 / 3.0 * s / (1.0 + s)) * own;
+  normal.scores += score * score.transpose();
   normal.weighted_chi2 += w * term.chi2;
   normal.weight_sum += w;
+}
+
+// Covariance of a robust estimate by what the points themselves say (Huber 1967): where some are much noisier than the
+// kernel takes them for, information times one variance promises too much. Six unknowns take as much as two points.
+Matrix6d sandwich(const Normal& normal, std::size_t points) {
+  const Matrix6d inverse = normal.curvature.inverse();
+  const auto n = static_cast<double>(points);
+  return n / (n - 2.0) * inverse * (normal.scores + kLeastVariance * normal.information) * inverse;
 }
 
 }  // namespace
@@ -132,7 +153,9 @@ MotionFit TwoFrameBa::run(const StereoRig& rig, PointPairs pairs, std::span<cons
   // 3 N measurements of the transfer, 6 spent on the motion; the kernel's loss of weight is divided out.
   const double dof = std::max(1.0, 3.0 * normal.weight_sum - 6.0);
   const double variance_scale = normal.weighted_chi2 / dof;
-  fit.cov_H = normal.information.inverse() * std::max(0.01, variance_scale);
+  fit.cov_H = used_.size() < kEnoughForScores
+                  ? Matrix6d(normal.information.inverse() * std::max(kLeastVariance, variance_scale))
+                  : sandwich(normal, used_.size());
   const double sigma_px = pairs[static_cast<std::size_t>(used_.front())].sigma_px;
   fit.rms_px = sigma_px * std::sqrt(variance_scale);
   if (!config_.adjust) align(rig, pairs, members, fit);

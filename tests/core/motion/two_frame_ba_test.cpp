@@ -85,6 +85,25 @@ TEST(TwoFrameBa, CovarianceFollowsTheNoiseNotTheAssumption) {
   EXPECT_GT(sum / kTrials, 4.0);
 }
 
+TEST(TwoFrameBa, WhereSomePointsAreNoisierThanOthersTheCovarianceTellsIt) {
+  // Dim water: one point in four has four times the noise of the others, and nothing says which.
+  constexpr int kTrials = 200;
+  double sum = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    WorldView view = mover(0, 0.2);
+    std::mt19937_64 random(static_cast<std::uint64_t>(trial));
+    std::normal_distribution<double> normal(0, 1);
+    for (std::size_t i = 0; i < view.pairs.size(); ++i) {
+      const double sigma_px = i % 4 == 0 ? 0.6 : 0.15;
+      for (StereoPoint* point : {&view.pairs[i].prev, &view.pairs[i].curr}) {
+        for (int d = 0; d < 3; ++d) point->z_px[d] += sigma_px * normal(random);
+      }
+    }
+    sum += nees(view.H_curr_prev(1), fit(view, view.all()));
+  }
+  EXPECT_NEAR(sum / kTrials, 6.0, 0.75);
+}
+
 TEST(TwoFrameBa, SwitchedOffItIsTheAlignmentOfTheTwoClouds) {
   const WorldView view = mover(0.2, 0.3);  // all of them agree
   TwoFrameBa off({.adjust = false}, 1000);
