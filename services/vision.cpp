@@ -83,7 +83,10 @@ void Vision::take(const StereoPair& pair) {
   const bool usable = is_usable(circumstances);
   if (usable) step(pair, circumstances.capture.capture_time, publication);
   settle_state(circumstances, publication);
-  if (publication.result.state == VisionState::lost) show_lost(pair);
+  // Both are a pair without a pose; in the second, too, it is to be seen whether the sides are right by now.
+  if (publication.result.state == VisionState::lost || publication.reason == StateReason::exchanged_sides) {
+    show_lost(pair);
+  }
   const Timestamp time = circumstances.capture.capture_time;
   if (parts_.preview != nullptr && circumstances.calibration_fits && parts_.preview->due(time)) {
     const ImageView left = usable && !parts_.rectifier.is_pass_through() ? left_.view() : pair.left();

@@ -31,7 +31,7 @@ namespace pelorus {
 struct VisionControl {
   std::atomic<bool> standby{false};
   std::atomic<std::uint32_t> resets{0};       // each increment starts the pipeline anew
-  std::atomic<bool> lost_pair_wanted{false};  // the next pair that ends LOST goes into VisionParts::lost_pairs
+  std::atomic<bool> lost_pair_wanted{false};  // the next pair that ends LOST, or exchanged, goes into lost_pairs
   std::atomic<bool> sides_exchanged{false};   // LOST is a CALIBRATION_FAULT meanwhile
 };
 

@@ -184,7 +184,7 @@ void App::log_cameras() {
 
 void App::log_exchanged_sides() {
   Parts& p = *parts_;
-  if (!p.service->exchanged_sides->look(p.health.state(), Clock::now())) return;
+  if (!p.service->exchanged_sides->look(p.health.state(), p.health.reason(), Clock::now())) return;
   p.log.line(
       LogLevel::error,
       "the left and right pictures are exchanged: points match only when they change places (exchange camera.left and "

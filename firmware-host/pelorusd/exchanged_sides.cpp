@@ -26,16 +26,15 @@ ExchangedSides::ExchangedSides(VisionControl& control, Mailbox<SourcePair>& lost
   }
 }
 
-bool ExchangedSides::look(VisionState state, Clock::time_point now) {
-  const bool told = state == VisionState::calibration_fault && control_.sides_exchanged.load();
-  if (state != VisionState::lost && !told) {
+bool ExchangedSides::look(VisionState state, StateReason reason, Clock::time_point now) {
+  if (reason == StateReason::repeated_picture) return false;  // was not worth a step: no word of what it shows
+  if (state != VisionState::lost && reason != StateReason::exchanged_sides) {
     lost_ = false;
     control_.sides_exchanged.store(false);
     return false;
   }
   if (!lost_) {
     lost_ = true;
-    decided_ = false;
     exchanged_ = 0;
     next_ask_ = now + kPatience;
     pause_ = kPatience;
@@ -43,22 +42,26 @@ bool ExchangedSides::look(VisionState state, Clock::time_point now) {
     control_.lost_pair_wanted.store(false);
     (void)lost_pairs_.fetch();
   }
-  if (decided_) return false;
-  if (const SourcePair* pair = lost_pairs_.fetch()) {
-    const Sides sides = sides_of(match_sides(*pair, rectifier_));
-    if (sides == Sides::exchanged) {
-      ++exchanged_;
-      next_ask_ = now + kPatience;  // the pair that confirms it is not waited for in the pauses of darkness
-    }
-    decided_ = sides == Sides::as_given || exchanged_ == kPairsToBelieve;
-    control_.sides_exchanged.store(exchanged_ == kPairsToBelieve);
-    return exchanged_ == kPairsToBelieve;
-  }
+  if (const SourcePair* pair = lost_pairs_.fetch()) return judge(*pair, now);
   if (now < next_ask_) return false;
   next_ask_ = now + pause_;
   pause_ = std::min(2 * pause_, kLongestPause);
   control_.lost_pair_wanted.store(true);
   return false;
+}
+
+bool ExchangedSides::judge(const SourcePair& pair, Clock::time_point now) {
+  const Sides sides = sides_of(match_sides(pair, rectifier_));
+  if (sides == Sides::unclear) return false;
+  const bool known = exchanged_ >= kPairsToBelieve;
+  exchanged_ = sides == Sides::exchanged ? std::min(exchanged_ + 1, kPairsToBelieve) : 0;
+  const bool believed = exchanged_ == kPairsToBelieve;
+  // The pair that confirms is not waited for in the pauses of darkness; what is known is asked about rarely.
+  const bool to_confirm = exchanged_ > 0 && !believed;
+  if (!to_confirm) pause_ = kLongestPause;
+  next_ask_ = now + (to_confirm ? kPatience : kLongestPause);
+  control_.sides_exchanged.store(believed);
+  return believed && !known;
 }
 
 }  // namespace pelorus

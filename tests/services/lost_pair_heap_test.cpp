@@ -1,4 +1,4 @@
-// Pairs that end LOST are shown to the main thread on request (VisionControl::lost_pair_wanted): no heap on the vision
+// Pairs without a pose are shown to the main thread on request (VisionControl::lost_pair_wanted): no heap on the vision
 // thread for it. A program of its own, because it counts all allocations of it.
 #include <gtest/gtest.h>
 
@@ -66,15 +66,22 @@ TEST(LostPairHeap, ShowingALostPairTakesNone) {
     });
   }
   for (int i = 0; i < 10; ++i) pass(dark);
+  // LOST, and what LOST becomes once the pictures were found exchanged.
   int shown = 0;
+  int shown_in_fault = 0;
   const long taken = test::allocations_in([&] {
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 60; ++i) {
+      control.sides_exchanged.store(i >= 30);
       control.lost_pair_wanted.store(true);
-      if (pass(dark) == VisionState::lost && lost_pairs.fetch() != nullptr) ++shown;
+      const VisionState state = pass(dark);
+      if (lost_pairs.fetch() == nullptr) continue;
+      shown += state == VisionState::lost ? 1 : 0;
+      shown_in_fault += state == VisionState::calibration_fault ? 1 : 0;
     }
   });
   EXPECT_EQ(taken, 0);
   EXPECT_EQ(shown, 30);
+  EXPECT_EQ(shown_in_fault, 30);
   vision.reset();
 }
 
