@@ -152,6 +152,11 @@ Result<std::unique_ptr<StereoSource>> open_dataset(const fs::path& path,
   if (!calibration) return calibration.error();
   auto pairing = pair_images(recording.value());
   if (!pairing) return pairing.error();
+  if (is_cut_short(recording.value())) {
+    const std::string& list = recording.value().listed_in;
+    recording.value().remarks.push_back("the pairs at the end of " + list +
+                                        " are not there; if the recording was cut on purpose, cut that list too");
+  }
   auto source = std::make_unique<RecordedSource>(std::move(recording.value()), std::move(pairing.value()),
                                                  std::move(calibration.value()));
   if (auto first = source->probe(); !first) return first.error();

@@ -123,7 +123,7 @@ fs::path find_euroc(const fs::path& path) {
 }
 
 Result<Recording> list_euroc(const fs::path& mav0) {
-  Recording recording{"EuRoC ASL", mav0, {}, {}, {}, [mav0] { return read_euroc_calibration(mav0); }};
+  Recording recording{"EuRoC ASL", mav0, {}, {}, {}, {}, [mav0] { return read_euroc_calibration(mav0); }};
   std::error_code ignored;
   if (!fs::is_directory(mav0 / "cam1", ignored))
     return Error{ErrorCode::bad_input, mav0.string(), "has cam0 but no cam1", "a stereo data set needs both cameras"};
@@ -133,6 +133,10 @@ Result<Recording> list_euroc(const fs::path& mav0) {
   if (!right) return right.error();
   recording.left = std::move(left.value());
   recording.right = std::move(right.value());
+  for (const char* list : {"cam0/data.csv", "cam1/data.csv"}) {
+    if (fs::exists(mav0 / list, ignored))
+      recording.listed_in += (recording.listed_in.empty() ? "" : " and ") + std::string(list);
+  }
   return recording;
 }
 

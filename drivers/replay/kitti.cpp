@@ -119,9 +119,7 @@ Result<Recording> list_kitti(Recording recording, const fs::path& left_folder, c
   if (!right) return right.error();
   recording.left = std::move(left.value());
   recording.right = std::move(right.value());
-  if (recording.left.back().file.empty() && recording.right.back().file.empty())
-    recording.remarks.push_back("the pairs at the end of " + times_file.filename().string() +
-                                " are not there; if the recording was cut on purpose, cut that file too");
+  recording.listed_in = times_file.filename().string();
   return recording;
 }
 
@@ -195,9 +193,9 @@ bool is_kitti_odometry(const fs::path& path) {
 
 Result<Recording> list_kitti_odometry(const fs::path& path) {
   const fs::path calib = path / "calib.txt";
-  return list_kitti({"KITTI odometry", path, {}, {}, {}, [calib] { return read_projections(calib, "P0", "P1", ""); }},
-                    path / "image_0", path / "image_1", path / "times.txt", parse_seconds,
-                    "seconds, as in 1.037000e-01");
+  return list_kitti(
+      {"KITTI odometry", path, {}, {}, {}, {}, [calib] { return read_projections(calib, "P0", "P1", ""); }},
+      path / "image_0", path / "image_1", path / "times.txt", parse_seconds, "seconds, as in 1.037000e-01");
 }
 
 bool is_kitti_raw(const fs::path& path) {
@@ -215,6 +213,7 @@ Result<Recording> list_kitti_raw(const fs::path& path) {
                      {},
                      {},
                      {"times of the left camera are used, taken as UTC"},
+                     {},
                      [calib] { return read_projections(calib, "P_rect_00", "P_rect_01", "S_rect_00"); }},
                     path / "image_00" / "data", path / "image_01" / "data", path / "image_00" / "timestamps.txt",
                     parse_date_time, "2011-09-26 13:04:32.351950336");

@@ -118,6 +118,18 @@ Result<Pairing> pair_images(const Recording& recording) {
                "the cameras' time stamps must agree to 5 ms and a quarter of the frame period"};
 }
 
+bool is_cut_short(const Recording& recording) {
+  std::int64_t listed_ns = 0;
+  std::int64_t present_ns = 0;
+  for (const auto* images : {&recording.left, &recording.right}) {
+    for (const RecordedImage& image : *images) {
+      listed_ns = std::max(listed_ns, image.time.ns);
+      if (!image.file.empty()) present_ns = std::max(present_ns, image.time.ns);
+    }
+  }
+  return listed_ns - kMaxSkew_ns > present_ns;
+}
+
 MissingPairs missing_among(const Pairing& pairing, std::size_t passed) {
   if (passed == 0) return {};
   const std::uint64_t lost = passed == pairing.pairs.size() ? pairing.lost_left + pairing.lost_right + pairing.lost_both

@@ -27,6 +27,7 @@ struct Recording {
   std::vector<RecordedImage> left;  // all that there should be, strictly increasing in time
   std::vector<RecordedImage> right;
   std::vector<std::string> remarks;  // what a user must know about the listing
+  std::string listed_in;             // the files that list the images; empty: what is there is all
   // Deferred, because a user's calibration may replace it.
   std::function<Result<LoadedCalibration>()> read_calibration;
 };
@@ -52,6 +53,10 @@ struct Pairing {
 // Images of the two cameras belong together when their times differ by less than a quarter of the period (and
 // 5 ms). seq counts nominal periods, so that every lost pair is a gap in it. An Error when nothing pairs up.
 [[nodiscard]] Result<Pairing> pair_images(const Recording& recording);
+
+// The list goes on where no image of either camera is: so it is when somebody kept the first part of a recording and
+// the list whole.
+[[nodiscard]] bool is_cut_short(const Recording& recording);
 
 // What a user has to do about times that do not increase; it depends on where the times stand.
 struct OrderCure {

@@ -158,6 +158,29 @@ TEST_F(Dataset, MissingPairsAtTheEndsOfAListAreCounted) {
   }
 }
 
+TEST_F(Dataset, AListThatIsLongerThanItsRecordingIsToldWithItsCure) {
+  const auto remark = [](const fs::path& root) {
+    const auto source = open(root);
+    return source == nullptr ? "" : source->description();
+  };
+  const std::string cure = " are not there; if the recording was cut on purpose, cut that list too";
+  const fs::path rooms = euroc(), odometry = kitti_odometry();
+  EXPECT_EQ(remark(rooms).find(cure), std::string::npos) << "whole";
+  fs::remove(rooms / "mav0/cam0/data" / png(3));
+  fs::remove(rooms / "mav0/cam0/data" / png(kPairs - 1));
+  EXPECT_EQ(remark(rooms).find(cure), std::string::npos) << "lost, not cut: the right image is there";
+  fs::remove(rooms / "mav0/cam1/data" / png(kPairs - 1));
+  EXPECT_NE(remark(rooms).find("the pairs at the end of cam0/data.csv and cam1/data.csv" + cure), std::string::npos)
+      << remark(rooms);
+  fs::remove(rooms / "mav0/cam1/data.csv");
+  EXPECT_NE(remark(rooms).find("the pairs at the end of cam0/data.csv" + cure), std::string::npos) << remark(rooms);
+  fs::remove(rooms / "mav0/cam0/data.csv");
+  EXPECT_EQ(remark(rooms).find(cure), std::string::npos) << "no list";
+  EXPECT_EQ(remark(odometry).find(cure), std::string::npos) << "whole";
+  for (const char* side : {"image_0", "image_1"}) fs::remove(odometry / side / "000007.png");
+  EXPECT_NE(remark(odometry).find("the pairs at the end of times.txt" + cure), std::string::npos) << remark(odometry);
+}
+
 TEST_F(Dataset, ALongGapIsReported) {
   const fs::path root = euroc();
   for (int i = 2; i < 6; ++i) fs::remove(root / "mav0/cam1/data" / png(i));
