@@ -1,10 +1,10 @@
 #include "firmware-host/pelorus/calib.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <opencv2/imgproc.hpp>
@@ -40,11 +40,15 @@ struct ConvertArguments {
   bool overwrite = false;
 };
 
-// By the words of --to.
-const std::map<std::string, CalibrationFormat> kFormats{{"opencv", CalibrationFormat::opencv},
-                                                        {"kalibr", CalibrationFormat::kalibr},
-                                                        {"ros", CalibrationFormat::ros},
-                                                        {"euroc", CalibrationFormat::euroc}};
+struct NamedFormat {
+  const char* word;  // of --to
+  CalibrationFormat format;
+};
+
+constexpr std::array<NamedFormat, 4> kFormats{{{"euroc", CalibrationFormat::euroc},
+                                               {"kalibr", CalibrationFormat::kalibr},
+                                               {"opencv", CalibrationFormat::opencv},
+                                               {"ros", CalibrationFormat::ros}}};
 
 constexpr double degrees(double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; }
 
@@ -219,8 +223,10 @@ Result<int> run_convert(const ConvertArguments& arguments) {
     if (!source) return source.error();
     loaded.value().calibration = source.value()->calibration();
   }
-  if (auto written = write_calibration(loaded.value().calibration, kFormats.at(arguments.format), arguments.out,
-                                       arguments.overwrite);
+  // The parser lets no other word through.
+  const auto* named = std::find_if(kFormats.begin(), kFormats.end(),
+                                   [&](const NamedFormat& known) { return arguments.format == known.word; });
+  if (auto written = write_calibration(loaded.value().calibration, named->format, arguments.out, arguments.overwrite);
       !written)
     return written.error();
   std::printf("calibration %s\n", loaded.value().origin.c_str());
@@ -254,7 +260,7 @@ Verb add_calib(CLI::App& app) {
   CLI::App* convert = parser->add_subcommand("convert", "Write a calibration in another format");
   convert->add_option("INPUT", convert_arguments->input, "Any calibration or data set that check reads")->required();
   std::vector<std::string> formats;
-  for (const auto& [word, format] : kFormats) formats.push_back(word);
+  for (const NamedFormat& known : kFormats) formats.emplace_back(known.word);
   convert->add_option("--to", convert_arguments->format, "opencv, kalibr (files), ros, euroc (folders)")
       ->required()
       ->check(one_of(formats));

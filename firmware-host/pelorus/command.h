@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -20,8 +21,8 @@ struct Verb {
 // CLI::PositiveNumber, whose message lists the range of double, in words.
 [[nodiscard]] inline CLI::Validator above_zero() {
   return {[](std::string& text) {
-            double value = 0;
-            const bool good = CLI::detail::lexical_cast(text, value) && value > 0;
+            char* end = nullptr;
+            const bool good = std::strtod(text.c_str(), &end) > 0 && *end == '\0';
             return good ? std::string() : "'" + text + "' is not a number above 0";
           },
           "above 0"};
@@ -29,12 +30,17 @@ struct Verb {
 
 // CLI::IsMember, whose message tells neither what to do nor, after a transformation, the words themselves.
 [[nodiscard]] inline CLI::Validator one_of(const std::vector<std::string>& words) {
-  const std::string all = CLI::detail::join(words, ", ");
+  std::string all;
+  std::string choices;  // in the form of the help, which the completion of the shell is made of
+  for (const std::string& word : words) {
+    all += (all.empty() ? "" : ", ") + word;
+    choices += (choices.empty() ? "" : ",") + word;
+  }
   return {[words, all](std::string& text) {
             const bool known = std::find(words.begin(), words.end(), text) != words.end();
             return known ? std::string() : "'" + text + "' is unknown (give one of: " + all + ")";
           },
-          "{" + CLI::detail::join(words, ",") + "}"};
+          "{" + choices + "}"};
 }
 
 }  // namespace pelorus

@@ -20,15 +20,32 @@ namespace pelorus {
 
 namespace {
 
-// CLI11's words for what is wrong, in the form of our own errors; it does not tell the unknown verb by itself.
+std::string first_unknown(const CLI::App& app) {
+  for (const std::string& word : app.remaining()) {
+    if (word != "--") return word;
+  }
+  return "";
+}
+
+// CLI11's words for what is wrong, in the form of our own errors, of the verb (of a verb) that it is wrong in. CLI11
+// does not name an unknown verb by itself, and of an unknown option only when nothing else is wrong.
 std::string usage_text(const CLI::App* app, const CLI::Error& error) {
-  const std::vector<std::string> unknown = app->remaining(true);
-  const bool no_verb = app->get_subcommands().empty();
-  const std::string what = !no_verb          ? error.what()
-                           : unknown.empty() ? "no verb is given"
-                                             : "'" + unknown.front() + "' is no verb";
-  const std::string verb = no_verb ? "" : " " + app->get_subcommands().front()->get_name();
-  return "pelorus: " + what + " (pelorus" + verb + " --help tells what there is)\n";
+  std::string command = "pelorus";
+  std::string unknown = first_unknown(*app);
+  while (unknown.empty() && !app->get_subcommands().empty()) {
+    app = app->get_subcommands().front();
+    command += " " + app->get_name();
+    unknown = first_unknown(*app);
+  }
+  std::string what = error.what();
+  if (!unknown.empty() && unknown.front() == '-') {
+    what = "'" + unknown + "' is no option of " + command;
+  } else if (app->get_subcommands().empty() && app->get_require_subcommand_min() > 0) {
+    what = unknown.empty() ? "no verb is given" : "'" + unknown + "' is no verb of " + command;
+  } else if (!unknown.empty()) {
+    what = "'" + unknown + "' is not expected";
+  }
+  return "pelorus: " + what + " (" + command + " --help tells what there is)\n";
 }
 
 }  // namespace

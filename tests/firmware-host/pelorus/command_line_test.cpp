@@ -28,6 +28,35 @@ TEST(CommandLine, WrongUsageEndsWithTheDocumentedCode) {
   }
 }
 
+TEST(CommandLine, WrongUsageNamesTheWordAndTheHelpThatKnowsBetter) {
+  struct Case {
+    const char* arguments;
+    const char* said;
+  };
+  for (const Case& c : {
+           Case{"", "no verb is given (pelorus --help tells"},
+           Case{"bogus", "'bogus' is no verb of pelorus (pelorus --help tells"},
+           Case{"bogus replay a", "'bogus' is not expected (pelorus --help tells"},
+           Case{"--bogus", "'--bogus' is no option of pelorus (pelorus --help tells"},
+           Case{"--bogus replay a --out b", "'--bogus' is no option of pelorus (pelorus --help tells"},
+           Case{"calib", "no verb is given (pelorus calib --help tells"},
+           Case{"calib bogus", "'bogus' is no verb of pelorus calib (pelorus calib --help tells"},
+           Case{"can bogus", "'bogus' is no verb of pelorus can (pelorus can --help tells"},
+           Case{"bench bogus", "'bogus' is no verb of pelorus bench (pelorus bench --help tells"},
+           Case{"bench --bogus", "'--bogus' is no option of pelorus bench (pelorus bench --help tells"},
+           Case{"calib check a b", "'b' is not expected (pelorus calib check --help tells"},
+           Case{"calib check a -- b", "'b' is not expected (pelorus calib --help tells"},
+           Case{"calib convert a --out b --to foo",
+                "(give one of: euroc, kalibr, opencv, ros) (pelorus calib convert "},
+           Case{"replay a --ou b", "'--ou' is no option of pelorus replay (pelorus replay --help tells"},
+           Case{"replay a", "--out is required (pelorus replay --help tells"},
+       }) {
+    const Outcome outcome = run_tool(c.arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << outcome.text;
+    EXPECT_NE(outcome.text.find(c.said), std::string::npos) << c.arguments << ": " << outcome.text;
+  }
+}
+
 TEST(CommandLine, MistypedDataSetLeavesNoOutputBehind) {
   const TemporaryFolder folder;
   const Outcome outcome = run_tool("replay /nonexistent/set --out " + (folder.path() / "out").string());
