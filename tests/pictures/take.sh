@@ -40,22 +40,24 @@ report_pictures() {
   node "$here/report_pictures.mjs" "$work/demo/results/report.html" "$page_build" "$pictures"
 }
 
-# A service of its own port, so that none that runs here shows in the pictures. Slow enough for any computer.
+# A service of its own port, so that none that runs here shows in the pictures; on the dive that the demo rendered.
 url='udpm://239.255.76.67:17667?ttl=0'
 start_service() {
   cat >"$work/live.yaml" <<YAML
-source: {kind: synthetic, path: $root/config/scenes/paper.yaml, rate_hz: 2, repeat: true}
-timing: {latency_ms: 400}
+source: {path: $work/demo/dataset, rate_hz: 10, repeat: true}
 lcm: {url: "$url"}
 YAML
   in_background "$programs/pelorusd" --config "$root/config/pelorus.yaml" --config "$work/live.yaml"
   sleep 12 # bodies are confirmed, the latencies of some seconds known
 }
 
+# The server chooses a number that is free and writes it down when it can be used: another's screen is never taken.
 start_screen() {
-  export DISPLAY=:77
-  in_background Xvfb "$DISPLAY" -screen 0 1000x620x24
-  sleep 2
+  local number
+  mkfifo "$work/screen"
+  in_background Xvfb -displayfd 3 -screen 0 1000x620x24 3<>"$work/screen"
+  read -r -t 60 number <>"$work/screen" || { echo "take.sh: Xvfb does not start: $(cat "$work/log")" >&2; exit 1; }
+  export DISPLAY=:$number
 }
 
 top_picture() {
