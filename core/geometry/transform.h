@@ -19,6 +19,11 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 [[nodiscard]] Vector6d se3_log(const Rigid3& T);
 // Adjoint for the twist order above: T exp(xi) T^-1 = exp(Ad(T) xi).
 [[nodiscard]] Matrix6d adjoint(const Rigid3& T);
+// Covariance of a perturbation in the axes of a, given the one in those of b: Ad(T_a_b) cov_b Ad(T_a_b)^T.
+[[nodiscard]] inline Matrix6d transported(const Rigid3& T_a_b, const Matrix6d& cov_b) {
+  const Matrix6d Ad = adjoint(T_a_b);
+  return Ad * cov_b * Ad.transpose();
+}
 // Rotation angle [rad], 0..pi.
 [[nodiscard]] double rotation_angle_rad(const Eigen::Matrix3d& R);
 // Nearest rotation after a long product (called by the trajectory only).

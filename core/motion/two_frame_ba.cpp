@@ -5,14 +5,17 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/robust_weight.h"
 #include "core/motion/stereo_transfer.h"
 
 namespace pelorus {
 namespace {
 
-constexpr double kLeastVariance = 0.01;       // of what the pairs state
-constexpr double kLeastCurvature = 0.1;       // of a far point, so that a bad fit's covariance is wide, not negative
-constexpr std::size_t kEnoughForScores = 60;  // points, for a covariance of six unknowns by their scatter
+constexpr double kLeastVariance = 0.01;  // of what the pairs state
+constexpr double kLeastCurvature = 0.1;  // of a far point, so that a bad fit's covariance is wide, not negative
+// Points for a covariance of six unknowns by their scatter: from so few on it has a say, from so many on it alone.
+constexpr double kFewForScatter = 40;
+constexpr double kEnoughForScatter = 80;
 
 // One point's contribution to the reduced normal equations.
 struct PointTerm {
@@ -40,11 +43,6 @@ PointTerm linearize(const StereoRig& rig, const Rigid3& H, const PointPair& pair
   return term;
 }
 
-double robust_weight(double chi2, double scale) {
-  const double s = 1.0 + chi2 / scale;
-  return 1.0 / (s * s);
-}
-
 // Reduced normal equations of the motion.
 struct Normal {
   Matrix6d information = Matrix6d::Zero();
@@ -67,7 +65,7 @@ void accumulate(const StereoRig& rig, const Rigid3& H, const PointPair& pair, do
     z_hat_px = pair.prev.z_px;
     return;
   }
-  const double w = robust_weight(term.chi2, robust_chi2);
+  const double w = geman_mcclure_weight(term.chi2, robust_chi2);
   const double w_px = w / (pair.sigma_px * pair.sigma_px);
   const Eigen::Matrix3d V_inv = (Eigen::Matrix3d::Identity() + term.A.transpose() * term.A).inverse();
   const Eigen::Matrix<double, 6, 3> coupling = term.B.transpose() * term.A;
@@ -153,9 +151,10 @@ MotionFit TwoFrameBa::run(const StereoRig& rig, PointPairs pairs, std::span<cons
   // 3 N measurements of the transfer, 6 spent on the motion; the kernel's loss of weight is divided out.
   const double dof = std::max(1.0, 3.0 * normal.weight_sum - 6.0);
   const double variance_scale = normal.weighted_chi2 / dof;
-  fit.cov_H = used_.size() < kEnoughForScores
-                  ? Matrix6d(normal.information.inverse() * std::max(kLeastVariance, variance_scale))
-                  : sandwich(normal, used_.size());
+  const double share =
+      std::clamp((static_cast<double>(used_.size()) - kFewForScatter) / (kEnoughForScatter - kFewForScatter), 0.0, 1.0);
+  fit.cov_H = (1.0 - share) * std::max(kLeastVariance, variance_scale) * normal.information.inverse();
+  if (share > 0) fit.cov_H += share * sandwich(normal, used_.size());
   const double sigma_px = pairs[static_cast<std::size_t>(used_.front())].sigma_px;
   fit.rms_px = sigma_px * std::sqrt(variance_scale);
   if (!config_.adjust) align(rig, pairs, members, fit);

@@ -99,9 +99,10 @@ void Registry::coast(const WorldStep& world, MovingBody& body) const {
   growth.topLeftCorner<3, 3>().diagonal().setConstant(grown_m * grown_m * world.dt_s / std::max(missing_s, 1e-3));
   growth.bottomRightCorner<3, 3>().diagonal().setConstant(grown_rad * grown_rad * world.dt_s /
                                                           std::max(missing_s, 1e-3));
-  const Matrix6d Ad = adjoint(body.T_world_obj);
-  body.cov_T_world_obj += Ad * growth * Ad.transpose();
-  body.cov_M_world += Ad * growth * Ad.transpose();
+  const Matrix6d grown = transported(body.T_world_obj, growth);
+  body.cov_steps += grown;
+  body.cov_T_world_obj += grown;
+  body.cov_M_world += grown;
 }
 
 // A body whose points stand apart for some frames gives up all but the largest part; the rest find their own way as

@@ -19,6 +19,7 @@ struct ModelPoint {
   std::int8_t laplacian = 0;
   bool has_descriptor = false;
   std::int64_t last_frame = 0;  // number of the step in which it was last seen
+  bool of_birth = true;         // measured in the frame of the body's birth, not in one that was guessed since
 };
 
 inline constexpr std::size_t kMaxModelPoints = 512;  // of a body
@@ -43,16 +44,18 @@ struct MovingBody {
   Timestamp first_seen;
   Timestamp last_seen;
   int frames_measured = 0;
-  int frames_missed = 0;        // in a row
-  int frames_apart = 0;         // in a row: its points stand in separate parts
-  double evidence = 0;          // sum of log-likelihood ratios, own motion against static
-  bool measured = false;        // in this step
-  std::int64_t back_since = 0;  // step in which it came back with a pose to be found better; 0: seen all along
-  bool place_known = true;      // false from a loss of the camera's own motion until the body is recognised
+  int frames_missed = 0;    // in a row
+  int frames_apart = 0;     // in a row: its points stand in separate parts
+  double evidence = 0;      // sum of log-likelihood ratios, own motion against static
+  bool measured = false;    // in this step
+  int recoveries_left = 0;  // tries to find the frame of its birth again
+  bool place_known = true;  // false from a loss of the camera's own motion until the body is recognised
   Rigid3 T_cam_obj = Rigid3::Identity();
   Rigid3 T_world_obj = Rigid3::Identity();
   Matrix6d cov_T_world_obj = Matrix6d::Zero();
-  // Of that: how well the frame of its birth is known, in it (right perturbations). Zero until it was out of sight.
+  // Of that: the steps since the frame of its birth was taken for known (left perturbations, world), and how well that
+  // frame is known (right ones, body). The second is zero until it was out of sight.
+  Matrix6d cov_steps = Matrix6d::Zero();
   Matrix6d cov_birth_frame = Matrix6d::Zero();
   Rigid3 M_world = Rigid3::Identity();
   Matrix6d cov_M_world = Matrix6d::Zero();

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "core/base/check.h"
 #include "core/base/fixed_vector.h"
@@ -16,14 +17,18 @@ constexpr int kLeastShared = 3;  // points that tie two poses
 
 const PointPair& at(PointPairs pairs, PointIndex i) { return pairs[static_cast<std::size_t>(i)]; }
 
-// The model's entry for a track: a new one takes the place of the longest unseen when the model is full.
-ModelPoint& model_entry(std::vector<ModelPoint>& model, TrackId id, const Track& track, int capacity) {
+// The model's entry for a track: a new one takes the place of the longest unseen when the model is full; while the
+// frame of the body's birth is looked for, that of one that tells nothing of it.
+ModelPoint& model_entry(MovingBody& body, TrackId id, const Track& track, int capacity) {
+  std::vector<ModelPoint>& model = body.model;
   const auto known = std::find_if(model.begin(), model.end(), [&](const ModelPoint& m) { return m.track == id; });
   if (known != model.end()) return *known;
   ModelPoint* entry = nullptr;
   if (static_cast<int>(model.size()) >= capacity) {
-    entry = &*std::min_element(model.begin(), model.end(),
-                               [](const ModelPoint& a, const ModelPoint& b) { return a.last_frame < b.last_frame; });
+    const bool looking = body.recoveries_left > 0;
+    entry = &*std::min_element(model.begin(), model.end(), [&](const ModelPoint& a, const ModelPoint& b) {
+      return std::pair(looking && a.of_birth, a.last_frame) < std::pair(looking && b.of_birth, b.last_frame);
+    });
   } else {
     entry = &model.emplace_back();
   }
@@ -143,17 +148,12 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
   }
   body.window.add_frame(rig, world.time, T_cam_obj, world.T_world_curr, observations_);
   // Without the window's answer the place is as good as it was before the step, and the step's motion.
-  if (body.frames_missed > 0) expect_birth_frame(world, body);
-  const Matrix6d Ad = adjoint(world.T_world_curr);
-  const Matrix6d Ad_M = adjoint(world.T_world_curr * H_curr_prev * world.T_world_prev.inverse());
-  Matrix6d cov_T_world_obj = Ad_M * body.cov_T_world_obj * Ad_M.transpose() + Ad * cov_H * Ad.transpose();
+  Matrix6d cov_steps = transported(world.T_world_curr * H_curr_prev * world.T_world_prev.inverse(), body.cov_steps) +
+                       transported(world.T_world_curr, cov_H);
   if (steps.object_window && body.window.adjust(rig) == StageOutcome::ok) {
     T_cam_obj = body.window.T_cam_body();
     H_curr_prev = T_cam_obj * body.window.T_cam_body_previous().inverse();
-    // Of a body that was out of sight the window knows the steps since only.
-    const Matrix6d Ad_birth = adjoint(world.T_world_curr * T_cam_obj);
-    cov_T_world_obj =
-        Ad * body.window.cov_T_cam_body() * Ad.transpose() + Ad_birth * body.cov_birth_frame * Ad_birth.transpose();
+    cov_steps = transported(world.T_world_curr, body.window.cov_T_cam_body());
     cov_H = body.window.cov_H_curr_prev();
   }
   if (cov_H.isZero()) {  // neither the step nor the window could be solved: nothing was measured
@@ -167,14 +167,15 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
   body.T_world_obj = orthonormalized(world.T_world_curr * T_cam_obj);
   // M_world = T_world_curr * H * T_prev_world (method section 1, in place of the paper's eq. 2).
   body.M_world = world.T_world_curr * H_curr_prev * world.T_world_prev.inverse();
-  body.cov_M_world = Ad * (cov_H + world.cov_H_static) * Ad.transpose();
-  body.cov_T_world_obj = cov_T_world_obj;
+  body.cov_M_world = transported(world.T_world_curr, cov_H + world.cov_H_static);
+  body.cov_steps = cov_steps;
   const Rigid3 step_obj = T_world_obj_before.inverse() * body.M_world * T_world_obj_before;
   const Vector6d twist = se3_log(step_obj) / world.dt_s;
   const double blend = body.frames_measured == 0 ? 1.0 : 0.6;
   body.twist_obj += blend * (twist - body.twist_obj);
+  if (steps.birth_frame) recover_birth_frame(rig, pairs, track_of_pair, world, body);
+  body.cov_T_world_obj = body.cov_steps + transported(body.T_world_obj, body.cov_birth_frame);
   remember_points(pairs, track_of_pair, body);
-  if (body.back_since > 0) recover_birth_frame(rig, pairs, track_of_pair, world, body);
   ++body.frames_measured;
   body.frames_missed = 0;
   body.last_seen = world.time;
@@ -182,11 +183,15 @@ void Registry::measure(const StereoRig& rig, PointPairs pairs, std::span<const T
 }
 
 // After frames without it the window's last frame is older than one step: the previous one goes in first. When none of
-// the points is known to the window its frames of before would not be tied to the new ones.
+// the points is known to the window its frames of before would not be tied to the new ones: the body is where it was
+// expected to be, and the frame of its birth is known as well as that.
 void Registry::bridge_window(const StereoRig& rig, PointPairs pairs, const WorldStep& world, MovingBody& body) {
   const auto known = std::count_if(body.members.begin(), body.members.end(),
                                    [&](PointIndex i) { return body.window.find(at(pairs, i).track) != nullptr; });
-  if (known < kLeastShared) body.window.clear();
+  if (known < kLeastShared) {
+    body.window.clear();
+    expect_birth_frame(world, body);
+  }
   add_previous_frame(rig, pairs, world, body);
 }
 
@@ -209,9 +214,10 @@ void Registry::remember_points(PointPairs pairs, std::span<const Track* const> t
     const Eigen::Vector3d p = refined != nullptr ? refined->p_body : Eigen::Vector3d(T_obj_cam * pair.curr.p_cam);
     p_obj.push_back(p);
     const Track& track = *track_of_pair[static_cast<std::size_t>(i)];
-    ModelPoint& known = model_entry(body.model, pair.track, track, config_.max_model_points);
+    ModelPoint& known = model_entry(body, pair.track, track, config_.max_model_points);
     known.p_obj = p;
     known.last_frame = step_;
+    known.of_birth = frame_is_of_birth(body);
   }
   Eigen::AlignedBox3d box;
   for (const auto& p : p_obj) box.extend(p);

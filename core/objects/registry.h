@@ -45,6 +45,7 @@ struct RegistrySteps {
   bool merge = true;
   bool object_window = true;
   bool reidentification = true;
+  bool birth_frame = true;  // of a body that is back: recovery of the frame of its birth
 };
 
 // What the static part of the step found.
@@ -110,6 +111,7 @@ class Registry {
   void resume(const StereoRig& rig, PointPairs pairs, const Group& group, const Reidentified& found,
               const WorldStep& world, std::span<BodyId> owner);
   void expect_birth_frame(const WorldStep& world, MovingBody& body) const;
+  [[nodiscard]] static bool frame_is_of_birth(const MovingBody& body) { return body.cov_birth_frame.isZero(0); }
   void recover_birth_frame(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
                            const WorldStep& world, MovingBody& body) const;
   void make_room();

@@ -2,11 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <limits>
 
 #include "core/base/fixed_vector.h"
 #include "core/geometry/hull.h"
 #include "core/geometry/rigid_fit.h"
+#include "core/geometry/robust_weight.h"
 #include "core/kernels/descriptor_distance.h"
 #include "core/motion/motion_proposal.h"
 
@@ -14,11 +14,12 @@ namespace pelorus {
 namespace {
 
 constexpr int kPoseIterations = 5;
-constexpr double kSameSpot_m = 0.03;
-constexpr double kRobustChi2 = 6.0;
+constexpr double kSameSpot_m = 0.03;  // detections nearer than this on the body are of one spot
+// Deviations of matches by descriptors, as the residuals of rendered bodies are (DECISIONS 53), and the squared length
+// in them at which a match counts a quarter.
 constexpr double kSigmaCentre_px = 0.7;
 constexpr double kSigmaDisparity_px = 0.1;
-constexpr std::int64_t kEver = std::numeric_limits<std::int64_t>::max();
+constexpr double kRobustChi2 = 6.0;
 
 struct ModelMatch {
   Eigen::Vector3d p_obj;
@@ -53,9 +54,9 @@ struct ModelDescriptors {
   FixedVector<const ModelPoint*, kMaxModelPoints> points;
   std::array<DescriptorBlock, kMaxModelPoints / kBlockDescriptors> blocks;
 
-  ModelDescriptors(const MovingBody& body, std::int64_t before_step) {
+  ModelDescriptors(const MovingBody& body, ModelPart part) {
     for (const ModelPoint& point : body.model) {
-      if (!point.has_descriptor || point.last_frame >= before_step) continue;
+      if (!point.has_descriptor || (part == ModelPart::of_birth && !point.of_birth)) continue;
       blocks[points.size() / kBlockDescriptors].set(points.size() % kBlockDescriptors, point.descriptor);
       points.push_back(&point);
     }
@@ -91,11 +92,11 @@ ModelMatches match_model(PointPairs pairs, std::span<const PointIndex> members,
                          const ReidentificationConfig& config) {
   ModelMatches matches;
   for (const PointIndex i : members) {
-    const auto place = static_cast<std::size_t>(i);
-    const Track& track = *track_of_pair[place];
+    const auto index = static_cast<std::size_t>(i);
+    const Track& track = *track_of_pair[index];
     if (!track.has_descriptor) continue;
     const ModelPoint* point = nearest_of(model, track, config);
-    if (point != nullptr) matches.push_back({point->p_obj, &pairs[place]});
+    if (point != nullptr) matches.push_back({point->p_obj, &pairs[index]});
   }
   return matches;
 }
@@ -103,10 +104,10 @@ ModelMatches match_model(PointPairs pairs, std::span<const PointIndex> members,
 // A pixel or so of a SURF centre's place changes with the view, in both images alike: across the view a match is worth
 // that, in depth as much as the disparity, which follows the surface. Rows: place in u, in v, disparity, in deviations.
 Eigen::Matrix3d whitening(const ModelMatch& m) {
-  const double place = 1.0 / std::max(kSigmaCentre_px, 1.5 * m.pair->sigma_px);
+  const double centre = 1.0 / std::max(kSigmaCentre_px, 1.5 * m.pair->sigma_px);
   const double disparity = 1.0 / std::max(kSigmaDisparity_px, 2.0 * m.pair->sigma_px);
   Eigen::Matrix3d W;
-  W << 0.5 * place, 0, 0.5 * place, 0, place, 0, disparity, 0, -disparity;
+  W << 0.5 * centre, 0, 0.5 * centre, 0, centre, 0, disparity, 0, -disparity;
   return W;
 }
 
@@ -142,7 +143,7 @@ std::optional<Placing> refine(const StereoRig& rig, const ModelMatches& matches,
       B.leftCols<3>() = whitening(m) * rig.project_jacobian(placing.T_cam_obj * m.p_obj) * placing.T_cam_obj.linear();
       B.rightCols<3>() = -B.leftCols<3>() * skew(m.p_obj);
       // Geman-McClure: a neighbour that looks alike is a pixel or two beside, and tells as much less.
-      const double weight = std::pow(1.0 + r->squaredNorm() / kRobustChi2, -2);
+      const double weight = geman_mcclure_weight(r->squaredNorm(), kRobustChi2);
       information += weight * B.transpose() * B;
       gradient += weight * B.transpose() * *r;
       ++placing.matches;
@@ -181,9 +182,8 @@ std::optional<Placing> place(const StereoRig& rig, const ModelMatches& matches, 
 
 std::optional<Placing> place_by_descriptors(const StereoRig& rig, PointPairs pairs, std::span<const PointIndex> members,
                                             std::span<const Track* const> track_of_pair, const MovingBody& body,
-                                            std::int64_t before_step, std::uint64_t seed,
-                                            const ReidentificationConfig& config) {
-  const ModelDescriptors model(body, before_step);
+                                            ModelPart part, std::uint64_t seed, const ReidentificationConfig& config) {
+  const ModelDescriptors model(body, part);
   const ModelMatches matches = match_model(pairs, members, track_of_pair, model, config);
   if (static_cast<int>(matches.size()) < config.min_matches) return std::nullopt;
   return place(rig, matches, seed, config);
@@ -200,7 +200,8 @@ Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& gro
     if (!out_of_sight(body)) continue;
     const double gate_m = config.gate_m + config.growth_mps * seconds(now - body.last_seen) + body.extent_m.norm() / 2;
     if (body.place_known && (T_cam_obj_expected[j] * body.centroid_obj - centre).norm() > gate_m) continue;
-    const auto placing = place_by_descriptors(rig, pairs, group.members, track_of_pair, body, kEver, seed + j, config);
+    const auto placing =
+        place_by_descriptors(rig, pairs, group.members, track_of_pair, body, ModelPart::all, seed + j, config);
     if (!placing || placing->matches <= found.placing.matches) continue;
     found = {static_cast<std::int32_t>(j), *placing};
   }
@@ -224,8 +225,8 @@ Reidentified recognise_motion(const StereoRig& rig, PointPairs pairs, const Grou
     const double gate_m = config.growth_mps * seconds(now - body.last_seen);
     if (distance_to_hull(hull, centre_of(pairs, group)) > gate_m) continue;
     least_px = miss_px;
-    const Matrix6d Ad = adjoint(body.T_world_obj.inverse());
-    found = {static_cast<std::int32_t>(j), {T_cam_obj_expected[j], Ad * body.cov_T_world_obj * Ad.transpose(), 0}};
+    found = {static_cast<std::int32_t>(j),
+             {T_cam_obj_expected[j], transported(body.T_world_obj.inverse(), body.cov_T_world_obj), 0}};
   }
   return found;
 }

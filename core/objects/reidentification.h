@@ -1,7 +1,8 @@
 #pragma once
 // Recognition of a body that comes back after an occlusion (method section 8): its expected place gates, SURF
-// descriptors of the group's points against those of the body's model propose matches, and a rigid fit of the
-// matches decides and yields the pose, so that the body keeps its id and its frame. Pure; deterministic.
+// descriptors of the group's points against those of the body's model propose matches, and a robust fit
+// of the matches in the images decides and yields the pose, so that the body keeps its id and its frame. Pure;
+// deterministic.
 
 #include <optional>
 
@@ -33,13 +34,16 @@ struct Reidentified {
   Placing placing;  // without matches: as expected
 };
 
-// Pose of the body by the descriptors of `members` and those of its model that were last seen before `step`. Nothing
-// when fewer than min_matches agree on it.
+enum class ModelPart : std::uint8_t { all, of_birth };
+
+// Pose of the body by the descriptors of `members` and those of its model, or of the part of it that was measured in
+// the frame of its birth. Nothing when fewer than min_matches agree on it. O(members * model + samples * matches);
+// takes 160 kB of stack.
 [[nodiscard]] std::optional<Placing> place_by_descriptors(const StereoRig& rig, PointPairs pairs,
                                                           std::span<const PointIndex> members,
                                                           std::span<const Track* const> track_of_pair,
-                                                          const MovingBody& body, std::int64_t before_step,
-                                                          std::uint64_t seed, const ReidentificationConfig& config);
+                                                          const MovingBody& body, ModelPart part, std::uint64_t seed,
+                                                          const ReidentificationConfig& config);
 
 // `T_cam_obj_expected[j]`: extrapolated pose of body j in the current camera; gates the bodies whose place is known.
 [[nodiscard]] Reidentified reidentify(const StereoRig& rig, PointPairs pairs, const Group& group,

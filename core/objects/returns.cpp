@@ -7,8 +7,8 @@
 namespace pelorus {
 namespace {
 
-constexpr std::int64_t kRecoverySpacing = 2;  // steps, bodies in turn: the same points tell little new in the next one
-constexpr double kClearlyBetter = 0.6;        // of a variance
+constexpr int kRecoveries = 100;        // tries after each return, one a step
+constexpr double kClearlyBetter = 0.6;  // of a variance
 
 // How well a frame is known: variance of its axes' directions, and of its origin.
 double turn_variance(const Matrix6d& cov) { return cov.bottomRightCorner<3, 3>().trace(); }
@@ -47,8 +47,11 @@ void Registry::resume(const StereoRig& rig, PointPairs pairs, const Group& group
   body.H_curr_prev = group.H_curr_prev;
   body.T_cam_obj = group.H_curr_prev.inverse() * found.placing.T_cam_obj;  // at the previous frame
   body.T_world_obj = world.T_world_prev * body.T_cam_obj;
-  body.cov_birth_frame = found.placing.cov_obj;
-  body.back_since = step_;
+  // The model may hold points of a guessed frame; those that matched are known no better than that.
+  body.cov_birth_frame =
+      found.placing.matches > 0 ? Matrix6d(body.cov_birth_frame + found.placing.cov_obj) : found.placing.cov_obj;
+  body.cov_steps.setZero();
+  body.recoveries_left = kRecoveries;
   body.measured = true;
   body.place_known = true;
   body.window.clear();
@@ -57,35 +60,32 @@ void Registry::resume(const StereoRig& rig, PointPairs pairs, const Group& group
   add_previous_frame(rig, pairs, world, body);
 }
 
-// Met where it was expected to be: the frame of its birth is known as well as that.
 void Registry::expect_birth_frame(const WorldStep& world, MovingBody& body) const {
-  const Matrix6d Ad = adjoint(body.T_world_obj.inverse());
-  body.cov_birth_frame = Ad * body.cov_T_world_obj * Ad.transpose();
-  if (seconds(world.time - body.last_seen) > config_.recover_after_s) body.back_since = step_;
+  body.cov_birth_frame = transported(body.T_world_obj.inverse(), body.cov_T_world_obj);
+  body.cov_steps.setZero();
+  if (seconds(world.time - body.last_seen) > config_.recover_after_s) body.recoveries_left = kRecoveries;
 }
 
 // As more of the body shows, the frame of its birth is looked for by the points that it had before it went out of
 // sight. Found better than it is known, it is the body's frame from here on; its motion is not touched by that.
 void Registry::recover_birth_frame(const StereoRig& rig, PointPairs pairs, std::span<const Track* const> track_of_pair,
                                    const WorldStep& world, MovingBody& body) const {
-  if ((step_ + body.id.value) % kRecoverySpacing != 0) return;
-  const auto placing = place_by_descriptors(rig, pairs, body.members, track_of_pair, body, body.back_since, world.seed,
-                                            reidentification_);
+  if (body.recoveries_left == 0) return;
+  --body.recoveries_left;
+  const auto placing = place_by_descriptors(rig, pairs, body.members, track_of_pair, body, ModelPart::of_birth,
+                                            world.seed, reidentification_);
   if (!placing || place_variance(placing->cov_obj) > place_variance(body.cov_birth_frame) ||
       turn_variance(placing->cov_obj) > kClearlyBetter * turn_variance(body.cov_birth_frame)) {
     return;
   }
-  const Rigid3 T_obj_birth = body.T_cam_obj.inverse() * placing->T_cam_obj;
-  const Rigid3 T_birth_obj = T_obj_birth.inverse();
+  const Rigid3 T_birth_obj = placing->T_cam_obj.inverse() * body.T_cam_obj;
   body.T_cam_obj = placing->T_cam_obj;
   body.T_world_obj = orthonormalized(world.T_world_curr * body.T_cam_obj);
-  const Matrix6d Ad = adjoint(body.T_world_obj);
-  body.cov_T_world_obj += Ad * (placing->cov_obj - body.cov_birth_frame) * Ad.transpose();
   body.cov_birth_frame = placing->cov_obj;
   body.twist_obj = adjoint(T_birth_obj) * body.twist_obj;
-  body.centroid_obj = T_birth_obj * body.centroid_obj;
+  body.extent_m.setZero();  // of other axes
   for (ModelPoint& point : body.model) {
-    if (point.last_frame >= body.back_since) point.p_obj = T_birth_obj * point.p_obj;
+    if (!point.of_birth) point.p_obj = T_birth_obj * point.p_obj;
   }
   body.window.change_frame(T_birth_obj);
 }

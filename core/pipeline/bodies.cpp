@@ -58,8 +58,9 @@ Pipeline::State::State(const PipelineConfig& c, const StereoRig& r, const Pipeli
 
 RegistrySteps Pipeline::State::registry_steps() const {
   const MethodSteps& on = config.steps;
-  return {on.hull_membership, on.identity_mismatch, on.merge_split, on.object_window && shed < Shed::object_window,
-          on.reidentification};
+  const bool spare = shed < Shed::object_window;
+  return {on.hull_membership,        on.identity_mismatch, on.merge_split,
+          on.object_window && spare, on.reidentification,  on.reidentification && spare};
 }
 
 void Pipeline::State::follow_bodies() {

@@ -156,7 +156,8 @@ void Pipeline::State::filter_static_and_moving() {
     result.report[Stage::static_filters].outcome = ego_outcome;
     return;
   }
-  result.report[Stage::static_filters].outcome = StageOutcome::ok;
+  const bool filters = config.steps.net_filter || config.steps.ray_filter;
+  result.report[Stage::static_filters].outcome = filters ? StageOutcome::ok : StageOutcome::not_run;
   fit_ego_motion();
   if (config.steps.ray_filter) {
     (void)ray_filter(rig, net, pairs, chi2_static, config.ray_filter, roles);

@@ -5,15 +5,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/geometry/robust_weight.h"
+
 namespace pelorus {
 namespace {
 
 constexpr std::size_t kPointsPerChosen = 5;  // points remembered for each that is adjusted
-
-double robust_weight(double chi2, double scale) {
-  const double s = 1.0 + chi2 / scale;
-  return 1.0 / (s * s);
-}
 
 // Where the six unknowns of a frame begin.
 Eigen::Index row_of(int unknown) { return 6 * static_cast<Eigen::Index>(unknown); }
@@ -93,7 +90,7 @@ double BodyWindow::accumulate_points(const StereoRig& rig) {
       if (!(p_cam.z() > 1e-3)) continue;
       const Eigen::Vector3d r = point.z_px[static_cast<std::size_t>(frame.slot)] - rig.project(p_cam);
       const double chi2 = r.squaredNorm() * inverse_variance;
-      const double w = frame.weight * robust_weight(frame.weight * chi2, config_.robust_chi2);
+      const double w = frame.weight * geman_mcclure_weight(frame.weight * chi2, config_.robust_chi2);
       weighted_chi2 += w * chi2;
       weight_sum += w;
       ++count;
