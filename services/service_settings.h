@@ -14,7 +14,7 @@ struct TimingConfig {
 
 // When frames stop telling the truth.
 struct CaptureWatchConfig {
-  double frame_timeout_ms = 0;  // without a pair for so long: CAMERA_FAULT; 0 = three periods of the pairs
+  double frame_timeout_ms = 0;  // without a pair for so long: CAMERA_FAULT; 0 = 3.5 periods of the pairs
   int frozen_pairs = 3;         // equal pictures in a row before they are a CAMERA_FAULT; 0 = not watched
   double time_jump_ms = 50;     // time stamps that leave the clock by more are a jump
 };

@@ -38,7 +38,7 @@ enum class ModelPart : std::uint8_t { all, of_birth };
 
 // Pose of the body by the descriptors of `members` and those of its model, or of the part of it that was measured in
 // the frame of its birth. Nothing when fewer than min_matches agree on it. O(members * model + samples * matches);
-// takes 160 kB of stack.
+// takes 200 kB of stack.
 [[nodiscard]] std::optional<Placing> place_by_descriptors(const StereoRig& rig, PointPairs pairs,
                                                           std::span<const PointIndex> members,
                                                           std::span<const Track* const> track_of_pair,

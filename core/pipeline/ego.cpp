@@ -214,8 +214,7 @@ void Pipeline::State::refine_ego_motion() {
   // The previous pose is corrected alike: bodies are carried from there.
   world.T_world_prev = T_world_cam * ego.H_curr_prev;
   world.cov_H_static = ego.cov_H;
-  const Matrix6d Ad = adjoint(T_world_cam);
-  cov_T_world_cam += Ad * ego.cov_H * Ad.transpose();
+  cov_T_world_cam += transported(T_world_cam, ego.cov_H);
   if (lost) {
     // The way gone unseen is not known better than that the vehicle went on as it did.
     const double lost_s = seconds(world.time - lost_since);

@@ -32,7 +32,7 @@ struct CameraConfig {
   bool packet_socket = true;     // GigE Vision by packet socket, which needs CAP_NET_RAW; else UDP
   double socket_buffer_mb = 4;   // GigE Vision by UDP; the kernel caps it at net.core.rmem_max
   bool resend = true;            // GigE Vision: ask for lost packets again
-  int frame_retention_ms = 100;  // GigE Vision: how long a frame waits for its packets
+  int frame_retention_ms = 30;  // GigE Vision: how long a frame waits for its packets
   int buffers = 8;               // between driver and program, each one frame
   int ring_slots = 8;            // frames between capture and vision; at least 8 for two cameras
   double reopen_after_s = 1.5;   // without a frame: the camera is closed and opened anew

@@ -31,6 +31,9 @@ void expect_same_bytes(const test::TemporaryFolder& a, const test::TemporaryFold
     EXPECT_GT(text.size(), 100U) << name << " holds next to nothing: the comparison would mean nothing";
     EXPECT_EQ(text, test::read_text(b.path() / name)) << name;
   }
+  const std::string lost = test::read_text(a.path() / "lost_pairs.csv");
+  EXPECT_NE(lost.find("\n0,0,0\n"), std::string::npos) << lost;
+  EXPECT_EQ(lost, test::read_text(b.path() / "lost_pairs.csv"));
 }
 
 TEST(Determinism, SameDiveGivesTheSameBytesOnOneProcessorAndOnAll) {

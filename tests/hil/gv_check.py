@@ -4,8 +4,7 @@
 usage: gv_check.py drops LOG SHOWN RATE_HZ            every exposure is a result, or a counted loss with its cause
        gv_check.py played LOG SHOWN RATE_HZ DATASET OUT   the pairs of the results as an EuRoC folder, for replay
        gv_check.py poses LOG RESULTS [TOLERANCE_M TOLERANCE_DEG [TOLERANCE_OF_BODIES_DEG]]
-                  results and bodies against those of `pelorus replay` of the same pairs; a body may be farther by one
-                  deviation of its motions' sum
+                  results and bodies against those of `pelorus replay` of the same pairs
        gv_check.py faults LOG SHOWN RATE_HZ CAMERAS_TXT [FRAMES]
                   each fault is told as a state within FRAMES (5), counted as injected, and over when it is over
 Exit code 1 when it is not so.
@@ -21,9 +20,7 @@ from gv_record import NO_PICTURES, Shown
 from lcm_log import events, results_and_reports, tracks
 
 CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped".split()
-# Bodies found or given up a pair or two earlier: a live step that left out work starts fewer points.
-MOST_ONE_SIDED = 0.02  # of all, or, in a short recording,
-MOST_ONE_SIDED_PAIRS = 2  # of each body
+MOST_ONE_SIDED = 0.02  # of the bodies: found or given up a pair earlier, where a live step left out work
 TURNED_MORE = 2  # a body has few points and is small: its orientation is worth less than the vehicle's
 MOST_OF_ORIGIN_M = 0.5  # two bodies nearer than this at first sight are one: less than bodies are apart
 # Origin and axes of a body are those of the moment it was found at: the middle of the points it was found by, of a body
@@ -31,9 +28,7 @@ MOST_OF_ORIGIN_M = 0.5  # two bodies nearer than this at first sight are one: le
 # pair or one or two beside it: two at 2 Hz, in which it turned by 2.3 degrees, were 32 mm.
 OFFSET_M = 0.1
 TURN_DEG = 3.0
-# Numbers follow the order of finding, which a step that left out work, or a lost pair, changes for a few:
-MOST_RENUMBERED = 0.5  # of the bodies, or, of few,
-MOST_RENUMBERED_BODIES = 2  # that changed places
+MOST_RENUMBERED = 0.5  # of the bodies: numbers follow the order of finding
 HEALTH_LAG_US = 400_000  # a loss is in the counters so long after its exposure
 
 
@@ -184,13 +179,10 @@ def turned(quaternion, vector):
 
 class SameBody:
     """A body of the live run and the stepped one's that is it. Where a body's own origin lies follows from the points
-    that it was found by, and these may differ by a few; what is compared is the motion since both have it. Where a body
-    is now is the sum of its motions from pair to pair, each found with an error of its own: `walk` is the variance of
-    that sum, in position and orientation."""
+    that it was found by, and these may differ by a few; what is compared is the motion since both have it."""
 
     def __init__(self, ident, live, stepped):
         self.ident = ident
-        self.walk = (0.0, 0.0)
         back = inverse(stepped["quaternion"])
         self.offset = turned(back, [a - b for a, b in zip(live["position"], stepped["position"])])
         self.turn = product(back, live["quaternion"])
@@ -198,16 +190,6 @@ class SameBody:
     def at_first_sight(self):
         """How far the two origins are apart [m], and how far the axes are turned [deg]."""
         return math.hypot(*self.offset), turned_deg(self.turn, (1, 0, 0, 0))
-
-    def moved(self, stepped):
-        """One pair more. Declared is the deviation of an axis."""
-        self.walk = tuple(sum_ + 3 * sigma**2 for sum_, sigma in zip(self.walk, stepped["sigmas_of_motion"]))
-
-    def share_of_bound(self, apart_m, turned, tolerance_m, tolerance_deg):
-        """Above 1: farther than the tolerance and one deviation of the summed motions allow. Two runs that had no point
-        in common would be 1.4 of it apart, in the mean; these two have most in common."""
-        return max(apart_m / (tolerance_m + math.sqrt(self.walk[0])),
-                   turned / (tolerance_deg + math.degrees(math.sqrt(self.walk[1]))))
 
     def expected(self, stepped):
         offset = turned(stepped["quaternion"], self.offset)
@@ -230,15 +212,14 @@ def stepped_bodies(results_folder):
             position, _ = in_body((value["p_x"], value["p_y"], value["p_z"]), (1, 0, 0, 0))
             quaternion = product(LOOKING_AHEAD, (value["q_w"], value["q_x"], value["q_y"], value["q_z"]))
             found.setdefault(int(row["timestamp_ns"]) // 1000, {})[int(row["object_id"])] = {
-                "position": position, "quaternion": quaternion,
-                "sigmas_of_motion": (float(row["sigma_t_m"]), float(row["sigma_r_rad"]))}
+                "position": position, "quaternion": quaternion}
     return found
 
 
 def check_bodies(log, results_folder, tolerance_m, tolerance_deg):
     """The same bodies in both, moving the same way."""
     stepped = stepped_bodies(results_folder)
-    differences, one_sided, total, same, share = Differences("bodies"), 0, 0, {}, 0.0
+    differences, one_sided, total, same = Differences("bodies"), 0, 0, {}
     for _, channel, data in events(log):
         if not channel.endswith(".VIS_TRACKS"):
             continue
@@ -252,10 +233,6 @@ def check_bodies(log, results_folder, tolerance_m, tolerance_deg):
         one_sided += len(live["bodies"]) + len(others) - 2 * len(both)
         for ident, partner in both.items():
             differences.add(*partner.expected(others[partner.ident]), live["bodies"][ident])
-            if tolerance_m is not None:
-                share = max(share, partner.share_of_bound(differences.apart_m[-1], differences.turned_deg[-1],
-                                                          float(tolerance_m), tolerance_deg))
-            partner.moved(others[partner.ident])
     renumbered = sum(ident != partner.ident for ident, partner in same.items())
     print(f"bodies of the same exposure compared: {len(differences.apart_m)}; in one of the two only: {one_sided} of "
           f"{total}; of another number: {renumbered} of {len(same)}")
@@ -267,10 +244,8 @@ def check_bodies(log, results_folder, tolerance_m, tolerance_deg):
     differences.tell()
     if tolerance_m is None:
         return False
-    print(f"bodies at most at {share:.2f} of what is allowed")
-    most_one_sided = max(MOST_ONE_SIDED * total, MOST_ONE_SIDED_PAIRS * len(same))
-    return (one_sided > most_one_sided or share > 1 or offset_m > OFFSET_M or turn_deg > TURN_DEG
-            or renumbered > max(MOST_RENUMBERED * len(same), MOST_RENUMBERED_BODIES))
+    return (one_sided > MOST_ONE_SIDED * total or differences.beyond(tolerance_m, tolerance_deg) or offset_m > OFFSET_M
+            or turn_deg > TURN_DEG or renumbered > MOST_RENUMBERED * len(same))
 
 
 CHECKS = {"drops": check_drops, "played": write_played, "poses": check_poses, "faults": check_faults}

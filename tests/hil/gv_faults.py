@@ -114,9 +114,7 @@ def check_told(episode, fault, shown, results, within):
     inside = between(results, spoiled_us, episode.end_us + within * shown.period_us)
     if fault.state is None:
         return check_no_pose(between(results, spoiled_us, episode.end_us), within)
-    # By chance some pictures in a row are lost: that is more than pairs dropped, and is told as such.
-    said = (fault, FAULTS["heavy loss"]) if episode.verb == "loss" else (fault,)
-    told = next((r for r in inside if any(r["state"] == f.state and f.reason in r["reason"] for f in said)), None)
+    told = next((r for r in inside if r["state"] == fault.state and fault.reason in r["reason"]), None)
     if told is None:
         seen = ", ".join(sorted({f"{r['state']} ({r['reason']})" for r in inside}))
         return False, f"not told; said was {seen}"
@@ -141,7 +139,7 @@ def check_counted(episode, fault, shown, results, reports, until_us):
         return False, "no VIS_HEALTH before or after"
     inside = between(results, episode.start_us, until_us)
     if episode.verb == "loss":
-        answered = {shown.tick(r["utime"]) for r in inside}
+        answered = {shown.tick(r["utime"]) for r in inside if r["reason"] != NO_PICTURES}
         both = shown.frames["left"].keys() & shown.frames["right"].keys()
         lost = [t for t in both if episode.start_us <= t * shown.period_us <= until_us and t not in answered]
         others = sum(growth(reports, name, episode.start_us, until_us)

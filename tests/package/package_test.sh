@@ -92,7 +92,7 @@ flags() { PKG_CONFIG_PATH="$root/usr/share/pkgconfig" pkg-config --define-prefix
 check "a listener compiles with pkg-config pelorus-messages" g++ -o "$work/listen" "$work/listen.cpp" $(flags)
 
 printf '== under systemd\n'
-"$source_root/tests/hil/guest.sh" -t 1800 -r "$root" -s -- bash /srv/packages/service_in_system.sh
+"$source_root/tests/hil/guest.sh" -t 900 -r "$root" -s -- bash /srv/packages/service_in_system.sh
 case $? in
   0) ;;
   77) printf 'skipped: no virtual machine here\n' ;;

@@ -26,10 +26,6 @@ source: {kind: synthetic, path: /var/lib/pelorus/scene.yaml, repeat: true}
 timing: {latency_ms: 1000}
 capture: {frame_timeout_ms: 4000}
 YAML
-# The unit's own limits are for a vehicle's processor; a busy machine that emulates one is slower by far.
-mkdir -p /etc/systemd/system/pelorusd.service.d
-printf '[Service]\nTimeoutStartSec=120\nTimeoutStopSec=60\n' >/etc/systemd/system/pelorusd.service.d/slow.conf
-systemctl daemon-reload
 systemctl reset-failed pelorusd
 check "it can be enabled" systemctl enable pelorusd
 check "it starts, with its first result" systemctl start pelorusd
@@ -42,13 +38,13 @@ check "the kernel settings are in force after boot" same 8388608 cat /proc/sys/n
 
 pid=$(main_pid)
 kill -KILL "$pid"
-check "killed, it is started again" until_true 180 replaced "$pid"
+check "killed, it is started again" until_true 60 replaced "$pid"
 pid=$(main_pid)
 kill -STOP "$pid"
-check "standing still, the watchdog ends it and it is started again" until_true 300 replaced "$pid"
+check "standing still, the watchdog ends it and it is started again" until_true 90 replaced "$pid"
 pid=$(main_pid)
 check "an upgrade installs" dpkg -i "$packages/second.deb"
-check "and the running service is the new one" until_true 180 replaced "$pid"
+check "and the running service is the new one" until_true 60 replaced "$pid"
 check "with the configuration as edited" grep -q "kind: synthetic" /etc/pelorus/pelorus.yaml
 check "stop ends it" systemctl stop pelorusd
 check "with success" same success systemctl show -P Result pelorusd

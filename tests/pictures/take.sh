@@ -44,11 +44,11 @@ report_pictures() {
 url='udpm://239.255.76.67:17667?ttl=0'
 start_service() {
   cat >"$work/live.yaml" <<YAML
-source: {path: $work/demo/dataset, rate_hz: 10, repeat: true}
+source: {path: $work/demo/dataset, rate_hz: 5, repeat: true}
 lcm: {url: "$url"}
 YAML
   in_background "$programs/pelorusd" --config "$root/config/pelorus.yaml" --config "$work/live.yaml"
-  sleep 12 # bodies are confirmed, the latencies of some seconds known
+  sleep 6 # bodies are confirmed, the latencies of some seconds known; the dive lasts 18 s before it begins anew
 }
 
 # The server chooses a number that is free and writes it down when it can be used: another's screen is never taken.
@@ -65,7 +65,7 @@ top_picture() {
     -e "$programs/pelorus" top --url "$url"
   local terminal
   terminal=$(window '^pelorus-top$')
-  sleep 8
+  sleep 6
   import -window "$terminal" "$pictures/top.png"
   kill "${started[-1]}"
 }

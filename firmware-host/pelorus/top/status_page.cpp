@@ -1,43 +1,16 @@
 #include "firmware-host/pelorus/top/status_page.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <limits>
 #include <numbers>
+
+#include "firmware-host/pelorus/top/page_writer.h"
 
 namespace pelorus {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-
-// printf into a string; lines are short.
-__attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) {
-  std::array<char, 512> out{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(out.data(), out.size(), format, arguments);
-  va_end(arguments);
-  return out.data();
-}
-
-// "12.3 ms", or "- ms" when unknown; what rounds to zero has no sign.
-std::string number(double value, int decimals, const char* unit, double scale = 1) {
-  if (!std::isfinite(value)) return std::string("-") + unit;
-  const double digit = std::pow(10.0, decimals);
-  return text("%.*f", decimals, std::round(value * scale * digit) / digit + 0.0) + unit;
-}
-
-std::string right(const std::string& word, std::size_t width) {
-  return word.size() < width ? std::string(width - word.size(), ' ') + word : word;
-}
-
-std::string left(std::string word, std::size_t width) {
-  if (word.size() < width) word.append(width - word.size(), ' ');
-  return word;
-}
 
 PageStyle style_of(std::int8_t state) {
   switch (state) {
@@ -51,66 +24,6 @@ PageStyle style_of(std::int8_t state) {
       return PageStyle::bad;
   }
 }
-
-constexpr std::size_t kLabelWidth = 9;
-
-// Takes from `rest` what fits into `room`, up to a gap between two facts, else to a blank; all of it without either.
-std::string take_what_fits(std::string& rest, std::size_t room) {
-  std::size_t end = std::string::npos;
-  if (rest.size() > room) {
-    end = rest.rfind("  ", room);
-    if (end == std::string::npos) end = rest.rfind(' ', room);
-  }
-  const std::string taken = rest.substr(0, end);
-  rest.erase(0, end == std::string::npos ? end : rest.find_first_not_of(' ', end));
-  return taken;
-}
-
-// A page under construction: label in front, then spans; a stale part is faint, behind a red mark with its age.
-class PageWriter {
- public:
-  PageWriter(ArrivalTime now, std::size_t columns) : now_(now), columns_(columns) {}
-
-  template <class Message>
-  void part(const std::optional<Heard<Message>>& heard, double limit_s) {
-    stale_ = is_stale(heard, now_, limit_s);
-    age_ = heard ? "STALE " + number(heard->age_s(now_), 1, " s") : "NOT HEARD YET";
-  }
-  // Facts that do not fit go on below: a count of faults that is cut off would be as good as none.
-  void line(const char* label, std::string facts, PageStyle style = PageStyle::plain) {
-    PageLine made{{PageStyle::strong, left(label, kLabelWidth)}};
-    std::size_t used = kLabelWidth;
-    if (stale_) made.push_back({PageStyle::bad, age_ + "  "});
-    if (stale_) used += age_.size() + 2;
-    do {
-      made.push_back({stale_ ? PageStyle::faint : style, take_what_fits(facts, columns_ > used ? columns_ - used : 0)});
-      lines_.push_back(std::move(made));
-      made = {{PageStyle::strong, left("", kLabelWidth)}};
-      used = kLabelWidth;
-    } while (!facts.empty());
-  }
-  // `rest` stands behind the line, or below it where that is too long.
-  void add_with_rest(PageLine made, const std::string& rest) {
-    const PageStyle style = stale_ ? PageStyle::faint : PageStyle::plain;
-    if (plain_text(made).size() + 3 + rest.size() <= columns_) {
-      made.push_back({style, "   " + rest});
-      return add(std::move(made));
-    }
-    add(std::move(made));
-    add({{PageStyle::strong, left("", kLabelWidth)}, {style, rest}});
-  }
-  void add(PageLine made) { lines_.push_back(std::move(made)); }
-  [[nodiscard]] bool stale() const { return stale_; }
-  [[nodiscard]] const std::string& age() const { return age_; }
-  std::vector<PageLine> take() { return std::move(lines_); }
-
- private:
-  ArrivalTime now_;
-  std::size_t columns_;
-  bool stale_ = false;
-  std::string age_;
-  std::vector<PageLine> lines_;
-};
 
 std::string state_figures(const vis_odom_t& m) {
   return "quality " + (m.quality_percent < 0 ? std::string("-") : std::to_string(m.quality_percent)) + " %   resets " +
