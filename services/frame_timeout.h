@@ -1,7 +1,7 @@
 #pragma once
-// FrameTimeout: how long to wait for a pair before there are no pictures. Given, or three and a half periods of the rate
-// at which pairs really come, so that it is told within five of them at any rate. The period is the median of the latest
-// intervals: lost pairs, spells and jumps do not move it. Thread-bound; no allocation.
+// FrameTimeout: how long to wait for a pair before there are no pictures. Given, or three and a half periods of the
+// rate at which pairs really come, so that it is told within five of them at any rate. The period is the median of the
+// latest intervals: lost pairs, spells and jumps do not move it. Thread-bound; no allocation.
 
 #include <array>
 #include <cstddef>

@@ -24,7 +24,7 @@ struct AravisConfig {
   bool packet_socket = true;
   int socket_buffer_bytes = 4 << 20;                      // of the UDP socket; the kernel caps it at net.core.rmem_max
   bool resend = true;                                     // ask for lost packets again
-  int frame_retention_ms = 30;                           // how long a frame waits for its missing packets
+  int frame_retention_ms = 30;                            // how long a frame waits for its missing packets
   DeviceClockKind clock = DeviceClockKind::free_running;  // ptp: switched on in the camera where it is offered
   StampAt stamp_at = StampAt::exposure_start;
 };

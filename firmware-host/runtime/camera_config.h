@@ -27,15 +27,15 @@ struct CameraConfig {
   double tolerance_ms = 2;             // between the mid-exposures of a pair; below half a period
   std::string clock = "free_running";  // ptp: set by PTP to this computer's time (GigE Vision)
   std::string stamp_at = "exposure_start";  // moment that a GigE Vision camera stamps; V4L2 devices tell it
-  double readout_ms = 0;         // V4L2: from the end of exposure to the last pixel, for devices that stamp that one
-  int packet_bytes = 1400;       // GigE Vision; 9000 where every device on the way takes jumbo frames
-  bool packet_socket = true;     // GigE Vision by packet socket, which needs CAP_NET_RAW; else UDP
-  double socket_buffer_mb = 4;   // GigE Vision by UDP; the kernel caps it at net.core.rmem_max
-  bool resend = true;            // GigE Vision: ask for lost packets again
+  double readout_ms = 0;        // V4L2: from the end of exposure to the last pixel, for devices that stamp that one
+  int packet_bytes = 1400;      // GigE Vision; 9000 where every device on the way takes jumbo frames
+  bool packet_socket = true;    // GigE Vision by packet socket, which needs CAP_NET_RAW; else UDP
+  double socket_buffer_mb = 4;  // GigE Vision by UDP; the kernel caps it at net.core.rmem_max
+  bool resend = true;           // GigE Vision: ask for lost packets again
   int frame_retention_ms = 30;  // GigE Vision: how long a frame waits for its packets
-  int buffers = 8;               // between driver and program, each one frame
-  int ring_slots = 8;            // frames between capture and vision; at least 8 for two cameras
-  double reopen_after_s = 1.5;   // without a frame: the camera is closed and opened anew
+  int buffers = 8;              // between driver and program, each one frame
+  int ring_slots = 8;           // frames between capture and vision; at least 8 for two cameras
+  double reopen_after_s = 1.5;  // without a frame: the camera is closed and opened anew
 };
 
 [[nodiscard]] StereoSyncConfig sync_config(const CameraConfig& config);
