@@ -1,7 +1,8 @@
 #include "services/health.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/base/nearest_rank.h"
 
 namespace pelorus {
 namespace {
@@ -12,12 +13,10 @@ void keep(std::vector<double>& values, double value) {
   if (values.size() < kMostSamples) values.push_back(value);
 }
 
-// Nearest rank; sorts.
+// Sorts.
 double quantile(std::vector<double>& values, double share) {
-  if (values.empty()) return kUnknown;
   std::sort(values.begin(), values.end());
-  const double rank = std::ceil(share * static_cast<double>(values.size()));
-  return values[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
+  return nearest_rank(values, share);
 }
 
 }  // namespace

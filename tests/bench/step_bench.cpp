@@ -9,6 +9,7 @@
 #include <map>
 #include <tuple>
 
+#include "core/base/nearest_rank.h"
 #include "core/pipeline/pipeline.h"
 #include "drivers/synthetic/synthetic_source.h"
 
@@ -75,7 +76,7 @@ const Dive& dive_of(const View& view) {
 
 double quantile_ms(std::vector<double>& values, double share) {
   std::sort(values.begin(), values.end());
-  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5)];
+  return nearest_rank(values, share);
 }
 
 void run_steps(benchmark::State& state, const View& view, int points) {

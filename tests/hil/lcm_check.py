@@ -6,13 +6,14 @@ Exit code 1 when fewer results came, or a larger share of the pairs was lost, af
 """
 
 import argparse
+import math
 import sys
 
 from lcm_log import ODOM, STATES, events, health
 
 def percentiles(values):
     values = sorted(values)
-    at = lambda share: values[min(len(values) - 1, int(share * len(values)))]
+    at = lambda share: values[max(0, math.ceil(share * len(values) - 1e-9) - 1)]  # nearest rank
     return {"p50": at(0.5), "p99": at(0.99), "p99.9": at(0.999), "max": values[-1], "jitter": values[-1] - values[0]}
 
 

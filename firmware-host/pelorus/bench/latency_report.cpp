@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
-#include <limits>
 
+#include "core/base/nearest_rank.h"
 #include "firmware-host/pelorus/bench/allocation_counter.h"
 #include "firmware-host/pelorus/json_object.h"
 
@@ -74,11 +73,7 @@ std::string faults_by_thread(const LatencyRun& run) {
 
 }  // namespace
 
-double Distribution::at(double share) const {
-  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto rank = static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-  return values[rank];
-}
+double Distribution::at(double share) const { return nearest_rank(values, share); }
 
 std::vector<Distribution> distributions(const LatencyRun& run) {
   std::vector<Distribution> all;

@@ -6,12 +6,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
-#include <limits>
 #include <map>
 #include <thread>
 
+#include "core/base/nearest_rank.h"
 #include "firmware-host/runtime/process_setup.h"
 
 namespace pelorus {
@@ -44,11 +43,7 @@ void wake_up_repeatedly(std::chrono::milliseconds length, std::chrono::microseco
 
 }  // namespace
 
-double WakeupDelays::percentile_us(double share) const {
-  if (late_us.empty()) return std::numeric_limits<double>::quiet_NaN();
-  const auto last = static_cast<double>(late_us.size() - 1);
-  return late_us[static_cast<std::size_t>(std::ceil(std::clamp(share, 0.0, 1.0) * last))];
-}
+double WakeupDelays::percentile_us(double share) const { return nearest_rank(late_us, share); }
 
 WakeupDelays measure_wakeups(std::chrono::milliseconds length, std::chrono::microseconds period) {
   WakeupDelays delays;

@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "core/base/nearest_rank.h"
 #include "core/geometry/rectifier.h"
 #include "core/pipeline/pipeline.h"
 #include "firmware-host/pelorus/replay/pair_feed.h"
@@ -34,14 +35,14 @@ class SummaryCounter {
     for (const ObjectState& object : result.objects_view()) {
       if (object.phase == ObjectPhase::confirmed) confirmed_.insert(object.id);
     }
-    step_us_.push_back(timing.step_us);
+    step_ms_.push_back(1e-3 * static_cast<double>(timing.step_us));
   }
 
   [[nodiscard]] ReplaySummary finish(const PairFeed& feed, std::optional<Error> failure) {
     summary_.lost = {feed.missing().count, feed.unreadable(), feed.dropped()};
     summary_.first_missing = feed.missing().first;
     summary_.objects_confirmed = static_cast<int>(confirmed_.size());
-    std::sort(step_us_.begin(), step_us_.end());
+    std::sort(step_ms_.begin(), step_ms_.end());
     summary_.median_step_ms = quantile_ms(0.5);
     summary_.p99_step_ms = quantile_ms(0.99);
     summary_.interrupted = feed.stopped();
@@ -53,14 +54,12 @@ class SummaryCounter {
 
  private:
   double quantile_ms(double share) const {
-    if (step_us_.empty()) return 0;
-    const auto index = static_cast<std::size_t>(share * static_cast<double>(step_us_.size() - 1) + 0.5);
-    return static_cast<double>(step_us_[index]) * 1e-3;
+    return step_ms_.empty() ? 0 : nearest_rank(step_ms_, share);
   }
 
   ReplaySummary summary_;
   std::set<BodyId> confirmed_;
-  std::vector<std::int64_t> step_us_;
+  std::vector<double> step_ms_;
 };
 
 // The pair as the pipeline wants it: rectified images, which are the source's own when there is nothing to do.

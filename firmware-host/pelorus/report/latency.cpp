@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/nearest_rank.h"
+
 namespace pelorus {
 namespace {
 
@@ -11,12 +13,6 @@ constexpr double kBinsPerDecade = 20;
 constexpr double kShortest_ms = 1e-3;  // the clock's resolution in the file
 
 }  // namespace
-
-double nearest_rank(const std::vector<double>& sorted, double share) {
-  const double rank = std::ceil(share * static_cast<double>(sorted.size()) - 1e-9);
-  const auto index = static_cast<std::size_t>(std::max(1.0, rank)) - 1;
-  return sorted[std::min(index, sorted.size() - 1)];
-}
 
 LatencyHistogram latency_histogram(std::vector<double> times_ms) {
   LatencyHistogram histogram;

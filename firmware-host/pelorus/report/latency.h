@@ -1,7 +1,6 @@
 #pragma once
 // latency_histogram: how long frames took, in bins of equal width on a logarithmic scale, with the quantiles that a
-// real-time system is judged by. The quantile of a share is the smallest measured value that at least this share of
-// the frames does not exceed: nothing is interpolated beyond what was measured. Pure.
+// real-time system is judged by (nearest_rank). Pure.
 
 #include <cstdint>
 #include <vector>
@@ -25,7 +24,5 @@ struct LatencyHistogram {
 };
 
 [[nodiscard]] LatencyHistogram latency_histogram(std::vector<double> times_ms);
-// Of sorted values, which must not be empty.
-[[nodiscard]] double nearest_rank(const std::vector<double>& sorted, double share);
 
 }  // namespace pelorus

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/nearest_rank.h"
 #include "firmware-host/pelorus/json_object.h"
 #include "firmware-host/pelorus/report/json_numbers.h"
 #include "firmware-host/pelorus/report/latency.h"
@@ -138,9 +139,7 @@ std::string stages_json(const StageRecord& stages) {
     row.text("name", to_text(static_cast<Stage>(stage))).raw("outcomes", outcomes.str());
     std::vector<double> times_ms = stages.stage_ms[stage];
     std::sort(times_ms.begin(), times_ms.end());
-    const auto quantile = [&times_ms](double share) {
-      return times_ms.empty() ? std::nan("") : nearest_rank(times_ms, share);
-    };
+    const auto quantile = [&times_ms](double share) { return nearest_rank(times_ms, share); };
     row.number("p50_ms", quantile(0.5)).number("p99_ms", quantile(0.99)).number("max_ms", quantile(1.0));
     rows.push_back(row.str());
   }
