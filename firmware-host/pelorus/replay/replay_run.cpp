@@ -53,9 +53,7 @@ class SummaryCounter {
   }
 
  private:
-  double quantile_ms(double share) const {
-    return step_ms_.empty() ? 0 : nearest_rank(step_ms_, share);
-  }
+  double quantile_ms(double share) const { return step_ms_.empty() ? 0 : nearest_rank(step_ms_, share); }
 
   ReplaySummary summary_;
   std::set<BodyId> confirmed_;
