@@ -27,7 +27,8 @@ in_background() {
 
 # window NAME: its number, once it is there.
 window() {
-  timeout 60 xdotool search --sync --onlyvisible --name "$1" | head -n 1
+  timeout 60 xdotool search --sync --onlyvisible --name "$1" | head -n 1 ||
+    { echo "take.sh: no window '$1' within a minute; the programs said:" >&2; tail -n 20 "$work/log" >&2; return 1; }
 }
 
 # few_colors PNG: screens have few; the file shrinks to a third.
