@@ -7,6 +7,8 @@
 #include <pelorus/vis_command_ack_t.hpp>
 #include <pelorus/vis_command_t.hpp>
 
+#include "services/lcm_link.h"
+
 namespace pelorus {
 namespace {
 
@@ -94,7 +96,7 @@ CommandListener::~CommandListener() {
 
 void CommandListener::Shared::run() {
   while (!asked_to_stop()) {
-    {
+    if (lcm_can_open(config.url)) {
       Session session(config, [this](const std::string& command, const std::string& argument) {
         return answer(command, argument);
       });

@@ -2,9 +2,16 @@
 
 #include <lcm/lcm-cpp.hpp>
 
+#include "services/lcm_address.h"
+
 namespace pelorus {
 namespace {
 constexpr std::chrono::seconds kRetry{1};
+}
+
+bool lcm_can_open(const std::string& url) {
+  const auto address = parse_lcm_url(url);
+  return !address || find_multicast_route(*address).exists;
 }
 
 LcmLink::LcmLink(std::string url) : url_(std::move(url)) {}
@@ -15,13 +22,10 @@ lcm::LCM* LcmLink::connection() {
   const Clock::time_point now = Clock::now();
   if (now < next_try_) return nullptr;
   next_try_ = now + kRetry;
+  if (!lcm_can_open(url_)) return nullptr;
   auto fresh = std::make_unique<lcm::LCM>(url_);
-  if (!fresh->good()) {
-    errors_.add();
-    return nullptr;
-  }
+  if (!fresh->good()) return nullptr;
   lcm_ = std::move(fresh);
-  open_.set(1);
   if (was_open_) reconnects_.add();
   was_open_ = true;
   failing_ = false;
@@ -29,17 +33,19 @@ lcm::LCM* LcmLink::connection() {
 }
 
 void LcmLink::note(bool success) {
+  works_.set(success ? 1 : 0);
   if (success) {
     failing_ = false;
     return;
   }
   errors_.add();
+  if (!lcm_) return;
   const Clock::time_point now = Clock::now();
   if (!failing_) failing_since_ = now;
   failing_ = true;
-  if (now - failing_since_ < kRetry) return;
+  // Without a route a new connection would be worse than this one, which speaks again with the route.
+  if (now - failing_since_ < kRetry || !lcm_can_open(url_)) return;
   lcm_.reset();
-  open_.set(0);
   next_try_ = now;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 // LcmLink: a connection to LCM that survives a network that is not there yet or goes away: opened when needed, and
-// again after failures, at most once a second. Thread-bound. Nothing of LCM's exceptions or prints is relied on; a
-// failure is a counter. (liblcm 1.3.1 cannot be opened without a multicast route, and publishing may fail at any time.)
+// again after failures, at most once a second. Thread-bound; the state may be read by any thread. Nothing of LCM's
+// exceptions or prints is relied on; a failure is a counter. (liblcm 1.3.1 cannot be opened without a multicast route,
+// which it tells in ten lines on the terminal each time: the route is looked for before; and publishing may fail at any
+// time.)
 
 #include <chrono>
 #include <cstdint>
@@ -16,6 +18,9 @@ class LCM;
 
 namespace pelorus {
 
+// Whether it can be opened as far as the kernel's routes say: a URL that is no multicast address is for LCM to judge.
+[[nodiscard]] bool lcm_can_open(const std::string& url);
+
 class LcmLink {
  public:
   explicit LcmLink(std::string url);
@@ -23,12 +28,15 @@ class LcmLink {
 
   // The open connection, or nullptr for now.
   [[nodiscard]] lcm::LCM* connection();
-  // Tells how the last use went; after a second of nothing but failures the connection is made anew.
+  // Tells how the last use went, no connection to be had being a failure; after a second of nothing but failures
+  // although there is a route the connection is made anew.
   void note(bool success);
 
+  // Uses that failed.
   [[nodiscard]] std::uint64_t errors() const { return errors_.value(); }
   [[nodiscard]] std::uint64_t reconnects() const { return reconnects_.value(); }
-  [[nodiscard]] bool is_open() const { return open_.value() != 0; }
+  // The last use went well: false from the first message that does not leave.
+  [[nodiscard]] bool works() const { return works_.value() != 0; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -41,7 +49,7 @@ class LcmLink {
   bool was_open_ = false;
   Counter errors_;
   Counter reconnects_;
-  Counter open_;
+  Counter works_;
 };
 
 }  // namespace pelorus

@@ -18,7 +18,8 @@ LcmPublisher::LcmPublisher(const LcmConfig& config, const Rigid3& T_body_cam)
 
 template <class Message>
 void LcmPublisher::send(const std::string& channel, const Message& message) {
-  if (lcm::LCM* connection = link_.connection()) link_.note(connection->publish(channel, &message) == 0);
+  lcm::LCM* connection = link_.connection();
+  link_.note(connection != nullptr && connection->publish(channel, &message) == 0);
 }
 
 void LcmPublisher::publish(const Publication& publication) {

@@ -219,22 +219,17 @@ void App::send_report(HealthReport& report, Timestamp now) {
   p.outputs = outputs_state(*p.service);
   gather_service(*p.service, report);
   report.version = PELORUS_VERSION;
-  if (p.service->can && !p.service->can->status().trouble.empty()) {
-    p.log.limited(LogLevel::warning, "can", p.service->can->status().trouble, now);
-  }
-  const RecorderState recorder = p.service->recorder->status().state;
-  if (recorder == RecorderState::disk_full || recorder == RecorderState::failed) {
-    p.log.limited(LogLevel::warning, "recorder", "recorder: " + report.recorder_text, now);
+  const std::vector<OutputTrouble> troubles = output_troubles(*p.service, report);
+  std::string troubles_text;
+  for (const OutputTrouble& trouble : troubles) {
+    p.log.limited(LogLevel::warning, trouble.output, trouble.text, now);
+    troubles_text += "; " + trouble.text;
   }
   std::array<char, 160> status{};
   std::snprintf(status.data(), status.size(), "STATUS=%s%s%s, %.1f Hz, latency %.1f ms", to_text(report.state),
                 report.reason == StateReason::none ? "" : ": ", to_text(report.reason), report.timing.results_rate_hz,
                 report.timing.latency_p50_ms);
-  p.manager.notify(status.data());
-  // Opened with the first message: before, nothing is known of it.
-  if (p.service->lcm && !p.service->lcm->link().is_open() && report.counters.lcm_errors > 0) {
-    p.log.limited(LogLevel::warning, "lcm", "LCM cannot be reached at " + p.service->config.lcm.url, now);
-  }
+  p.manager.notify(status.data() + troubles_text);
   p.service->desk.health.post();
   p.service->desk.wake.ring();
 }

@@ -67,6 +67,20 @@ void gather_service(const ServiceThreads& service, HealthReport& report) {
   report.calibration_hash = service.calibration_fingerprint;
 }
 
+std::vector<OutputTrouble> output_troubles(const ServiceThreads& service, const HealthReport& report) {
+  std::vector<OutputTrouble> found;
+  if (service.can && !service.can->status().trouble.empty()) found.push_back({"can", service.can->status().trouble});
+  const RecorderState recorder = service.recorder->status().state;
+  if (recorder == RecorderState::disk_full || recorder == RecorderState::failed) {
+    found.push_back({"recorder", "recorder: " + report.recorder_text});
+  }
+  // Opened with the first message: before, nothing is known of it.
+  if (service.lcm && !service.lcm->link().works() && report.counters.lcm_errors > 0) {
+    found.push_back({"lcm", "LCM cannot be reached at " + service.config.lcm.url});
+  }
+  return found;
+}
+
 std::string outputs_state(const ServiceThreads& service) {
   std::string state;
   if (service.can) {
@@ -75,7 +89,7 @@ std::string outputs_state(const ServiceThreads& service) {
   }
   const RecorderStatus recorder = service.recorder->status();
   state += std::string(" | ") + text(recorder.state) + " " + recorder.folder + " | ";
-  if (service.lcm) state += service.lcm->link().is_open() ? "open" : "closed";
+  if (service.lcm) state += service.lcm->link().works() ? "open" : "closed";
   return state;
 }
 

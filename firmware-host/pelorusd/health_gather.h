@@ -15,6 +15,13 @@ void gather_recorder(const RecorderStatus& recorder, HealthReport& report);
 // All of the above and what else the parts know.
 void gather_service(const ServiceThreads& service, HealthReport& report);
 
+// An output that does not work, and why: for the log and systemd's status line, which need neither network nor bus.
+struct OutputTrouble {
+  const char* output;
+  std::string text;
+};
+[[nodiscard]] std::vector<OutputTrouble> output_troubles(const ServiceThreads& service, const HealthReport& report);
+
 // Words that change when the CAN bus, the recorder or LCM begins or ceases to work, and at nothing else.
 [[nodiscard]] std::string outputs_state(const ServiceThreads& service);
 

@@ -67,6 +67,7 @@ source:
   kind: aravis
   calibration: $dataset
 camera:
+  packet_bytes: ${PELORUS_HIL_PACKET_BYTES:-1400}
   left: 127.0.0.1
   right: 127.0.1.2
   rate_hz: $rate

@@ -46,8 +46,8 @@ inline bool enter_private_network(std::initializer_list<const char*> more_addres
   return good;
 }
 
-// A route for multicast over loopback, without which LCM cannot be opened.
-inline bool add_multicast_route() {
+// A route for multicast over loopback, without which LCM cannot be opened: `change` adds or deletes it.
+inline bool change_multicast_route(unsigned long change) {
   const int fd = socket(AF_INET, SOCK_DGRAM, 0);
   rtentry route{};
   const auto set = [](sockaddr& place, std::uint32_t ip) {
@@ -62,9 +62,11 @@ inline bool add_multicast_route() {
   route.rt_flags = RTF_UP;
   char loopback[] = "lo";
   route.rt_dev = loopback;
-  const bool added = ioctl(fd, SIOCADDRT, &route) == 0;
+  const bool changed = ioctl(fd, change, &route) == 0;
   close(fd);
-  return added;
+  return changed;
 }
+inline bool add_multicast_route() { return change_multicast_route(SIOCADDRT); }
+inline bool delete_multicast_route() { return change_multicast_route(SIOCDELRT); }
 
 }  // namespace pelorus::test

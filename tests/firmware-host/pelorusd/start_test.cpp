@@ -84,11 +84,11 @@ int without_route(const std::filesystem::path& dive) {
                                                  "\"\n  repeat: true\nlcm:\n  url: \"" + url + "\"\n  vehicle: TEST\n");
   test::ChildProcess service({PELORUSD, "--config", (folder.path() / "p.yaml").string()}, folder.path() / "log");
   const auto log = [&] { return test::read_text(folder.path() / "log"); };
-  const auto says = [&](const char* text) {
-    for (int i = 0; i < 100 && log().find(text) == std::string::npos; ++i) {
+  const auto says = [&](const char* text, std::size_t from = 0) {
+    for (int i = 0; i < 100 && log().find(text, from) == std::string::npos; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
-    return log().find(text) != std::string::npos;
+    return log().find(text, from) != std::string::npos;
   };
   if (!says("LCM cannot be reached")) return 1;
   if (!says("TRACKING")) return 2;  // vision goes on meanwhile
@@ -99,6 +99,20 @@ int without_route(const std::filesystem::path& dive) {
   if (!health.wait_for(1, 10) || health.messages[0].lcm_errors == 0) return 5;
   // Told as soon as it is open again, not with the next second.
   if (health.messages[0].utime - odom.messages[0].publish_utime > 300'000) return 7;
+  // Lost under way: told, each message counted, and it speaks again by itself.
+  const std::size_t told_so_far = log().size();
+  const std::int64_t errors_so_far = health.messages.back().lcm_errors;
+  const std::int64_t last_heard = odom.messages.back().seq;
+  if (!test::delete_multicast_route()) return 8;
+  if (!says("LCM cannot be reached", told_so_far)) return 9;
+  if (log().find("requires a valid multicast route") != std::string::npos)
+    return 10;  // ten lines of LCM's own, once a second
+  if (!test::add_multicast_route()) return 11;
+  const std::size_t heard = odom.messages.size(), reported = health.messages.size();
+  if (!odom.wait_for(heard + 3, 10) || !health.wait_for(reported + 2, 10)) return 12;
+  const std::int64_t unheard = odom.messages[heard].seq - last_heard - 1;
+  const std::int64_t counted = health.messages.back().lcm_errors - errors_so_far;
+  if (unheard < 1 || counted < 2 * unheard || health.messages.back().lcm_reconnects != 0) return 13;
   service.send(SIGTERM);
   return service.wait() == 0 ? 0 : 6;
 }
