@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
-"""CAN against LCM of the same pelorusd (recordings of can_service.sh): every result is one set with the same numbers; how
+"""CAN against LCM of the same pelorusd: every result is one set with the same numbers; how
 long after the exposure each is there; and a bus that goes down is in VIS_HEALTH within five pictures.
 
-usage: can_service_check.py FOLDER RESULTS RATE_HZ
+usage: can_service_check.py FOLDER RESULTS RATE_HZ    recordings of can_service.sh
+       can_service_check.py sets FOLDER               log.lcm and sets.json of gigevision.sh
 Exit code 1 when it is not so.
 """
 
@@ -52,19 +53,18 @@ def wrong_numbers(result, one):
     return wrong, len(compared)
 
 
-def check_sets(folder, expected):
-    results, reports = results_and_reports(log_of(folder, "service"))
+def sets_in(folder):
     with open(os.path.join(folder, "sets.json"), encoding="utf-8") as lines:
-        sets = [line for line in map(json.loads, filter(lambda l: l.startswith("{"), lines)) if "state" in line]
-    counted = reports[-1]["can_sets_sent"]  # the last results leave after the last report
-    bad = len(results) != expected or len(sets) != expected or not len(sets) - 3 <= counted <= len(sets)
-    print(f"results on LCM {len(results)}, sets on CAN {len(sets)}, last VIS_HEALTH counts {counted}")
-    compared, to_can, to_lcm, wrong = 0, [], [], []
+        return [line for line in map(json.loads, filter(lambda l: l.startswith("{"), lines)) if "state" in line]
+
+
+def compare(results, sets):
+    """Each result with its set: how many have none, how many numbers agree, the names of those that do not."""
+    compared, to_can, to_lcm, wrong, without = 0, [], [], [], []
     for result in results:
         one = set_of(result, sets)
         if one is None:
-            print(f"result {result['seq']} has no set")
-            bad = True
+            without.append(result["seq"])
             continue
         differing, count = wrong_numbers(result, one)
         wrong += differing
@@ -74,7 +74,31 @@ def check_sets(folder, expected):
     print(f"numbers of CAN compared with LCM: {compared}, beyond half a step: {len(wrong)} {sorted(set(wrong))}")
     for name, values in (("capture to LCM", to_lcm), ("capture to CAN", to_can)):
         print(f"{name} [ms]: " + " ".join(f"{k} {v:.2f}" for k, v in percentiles(values).items()))
-    return bad or bool(wrong) or compared < 6 * expected
+    return without, compared, wrong
+
+
+def check_sets(folder, expected):
+    results, reports = results_and_reports(log_of(folder, "service"))
+    sets = sets_in(folder)
+    counted = reports[-1]["can_sets_sent"]  # the last results leave after the last report
+    bad = len(results) != expected or len(sets) != expected or not len(sets) - 3 <= counted <= len(sets)
+    print(f"results on LCM {len(results)}, sets on CAN {len(sets)}, last VIS_HEALTH counts {counted}")
+    without, compared, wrong = compare(results, sets)
+    if without:
+        print(f"results without a set: {without}")
+    return bad or bool(without) or bool(wrong) or compared < 6 * expected
+
+
+def check_live_sets(folder):
+    """Of a run in which the bus may have been down: a result without a set has to be counted as unheard or dropped."""
+    results, reports = results_and_reports(log_of(folder, "log"))
+    sets = sets_in(folder)
+    without, compared, wrong = compare(results, sets)
+    uncounted = len(without) - reports[-1]["can_sets_unheard"] - reports[-1]["can_sets_dropped"]
+    print(f"results on LCM {len(results)}, sets on CAN {len(sets)}, without a set {len(without)}, counted as unheard "
+          f"{reports[-1]['can_sets_unheard']}, as dropped {reports[-1]['can_sets_dropped']}")
+    poses = sum(r["valid"] for r in results)
+    return bool(wrong) or uncounted > 0 or compared < 3 * (poses - len(without))
 
 
 def check_down(folder, rate_hz):
@@ -92,6 +116,8 @@ def check_down(folder, rate_hz):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) == 3 and sys.argv[1] == "sets":
+        sys.exit(1 if check_live_sets(sys.argv[2]) else 0)
     if len(sys.argv) != 4:
         sys.exit(__doc__)
     FAILURES = [check_sets(sys.argv[1], int(sys.argv[2])), check_down(sys.argv[1], float(sys.argv[3]))]

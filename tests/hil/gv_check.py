@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """What the service made of two cameras of which it is known what they took and when (gv_cameras SHOWN_CSV).
 
-usage: gv_check.py drops LOG SHOWN RATE_HZ            every exposure is a result, or a counted loss with its cause
+usage: gv_check.py drops LOG SHOWN RATE_HZ [END_NS]   every exposure up to END_NS, or to the last result, is a result,
+                  or a counted loss with its cause
        gv_check.py played LOG SHOWN RATE_HZ DATASET OUT   the pairs of the results as an EuRoC folder, for replay
        gv_check.py poses LOG RESULTS [TOLERANCE_M TOLERANCE_DEG [TOLERANCE_OF_BODIES_DEG]]
                   results and bodies against those of `pelorus replay` of the same pairs
-       gv_check.py faults LOG SHOWN RATE_HZ CAMERAS_TXT [FRAMES]
+       gv_check.py faults LOG SHOWN RATE_HZ FOLDER [FRAMES]      FOLDER: cameras.txt, around.txt, service.log
                   each fault is told as a state within FRAMES (5), counted as injected, and over when it is over
 Exit code 1 when it is not so.
 """
@@ -19,7 +20,8 @@ from gv_faults import check_faults
 from gv_record import NO_PICTURES, Shown
 from lcm_log import events, results_and_reports, tracks
 
-CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped".split()
+# Why an exposure has no result at the listener; lcm_errors: it had one, that could not be sent.
+CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped lcm_errors".split()
 MOST_ONE_SIDED = 0.02  # of the bodies: found or given up a pair earlier, where a live step left out work
 TURNED_MORE = 2  # a body has few points and is small: its orientation is worth less than the vehicle's
 MOST_OF_ORIGIN_M = 0.5  # two bodies nearer than this at first sight are one: less than bodies are apart
@@ -30,13 +32,16 @@ OFFSET_M = 0.1
 TURN_DEG = 3.0
 MOST_RENUMBERED = 0.5  # of the bodies: numbers follow the order of finding
 HEALTH_LAG_US = 400_000  # a loss is in the counters so long after its exposure
+LATEST_RESULT_US = 500_000  # a result is there so long after its exposure
 
 
-def check_drops(log, shown_path, rate_hz):
+def check_drops(log, shown_path, rate_hz, end_ns=None):
     shown = Shown(shown_path, rate_hz)
     results, reports = results_and_reports(log)
     pictures = [r for r in results if r["reason"] != NO_PICTURES]
     first, last = shown.tick(pictures[0]["utime"]), shown.tick(pictures[-1]["utime"])
+    if end_ns is not None:
+        last = max(last, shown.tick(int(end_ns) / 1000 - LATEST_RESULT_US))
     answered = {shown.tick(r["utime"]) for r in pictures}
     not_taken, lost = {"left": 0, "right": 0, "both": 0}, []
     for tick in range(first, last + 1):

@@ -1,13 +1,14 @@
 """Whether each injected fault was told in time, counted as injected, and over when it was over."""
 
 import math
+import os
 from collections import namedtuple
 
+from gv_outputs import CHECKS as AROUND
 from gv_record import NO_PICTURES, Shown
 from lcm_log import results_and_reports
 
-# What a fault has to lead to: a state and its reason, and the counter that has to grow. None: nobody can know what is
-# wrong, but no pose may come of it.
+# What a fault has to lead to: a state and its reason, and the counter that has to grow.
 Fault = namedtuple("Fault", "state reason counter")
 FAULTS = {
     "off": Fault("CAMERA_FAULT", "no pictures", "camera_timeouts"),
@@ -16,9 +17,11 @@ FAULTS = {
     "clock of both": Fault("DEGRADED", "time stamps jumped", "time_jumps"),
     "loss": Fault("DEGRADED", "pairs dropped", "dropped_in_source"),
     "heavy loss": Fault("CAMERA_FAULT", "no pictures", "camera_timeouts"),  # hardly a picture is whole
-    "late": Fault(None, "", None),
-    "swap": Fault(None, "", None),
+    "late": Fault("LOST", "few points", "losses_of_track"),
+    "swap": Fault("LOST", "few points", "losses_of_track"),
 }
+NO_POSE = ("late", "swap")  # nobody can know what is wrong, but no pose may come of it
+EXCHANGED = "left and right pictures exchanged"  # of both sides, when it has lasted for three seconds
 BACK_FRAMES = {"off": 100, "heavy loss": 100}  # a camera that is on again is found, opened and started first
 BACK_OTHERS = 20
 HEAVY_LOSS = 0.005  # of the packets, of which a picture has hundreds
@@ -41,11 +44,12 @@ class Episode:
         return f"{self.verb} {'+'.join(sorted(self.sides))}"
 
 
-def episodes(path):
-    found, open_sides, current = [], set(), None
-    with open(path, encoding="utf-8") as lines:
-        obeyed = [line.split() for line in lines if line.startswith("obeyed")]
-    for _, time_ns, verb, side, *values in obeyed:
+def episodes(folder):
+    found, open_sides, current, obeyed = [], set(), None, []
+    for name in ("cameras.txt", "around.txt"):
+        with open(os.path.join(folder, name), encoding="utf-8") as lines:
+            obeyed += [line.split() for line in lines if line.startswith("obeyed")]
+    for _, time_ns, verb, side, *values in sorted(obeyed, key=lambda words: int(words[1])):
         time_us = int(time_ns) / 1000
         if verb == "on" or values == ["0"]:
             open_sides.discard(side)
@@ -98,11 +102,14 @@ def growth(reports, name, from_us, to_us):
     return after[0][name] - before[-1][name] if before and after else None
 
 
-def check_no_pose(wrong, within):
+def check_no_pose(episode, shown, results):
     """Of results of wrong pictures."""
+    wrong = between(results, shown.tick(episode.start_us + shown.period_us) * shown.period_us, episode.end_us)
     said = sorted({f"{r['state']} ({r['reason']})" for r in wrong})
     poses = sum(r["valid"] for r in wrong)
-    return len(wrong) > within >= poses, f"{len(wrong)} results of wrong pictures, {poses} with a pose; said was {', '.join(said)}"
+    exchanged = any(r["reason"] == EXCHANGED for r in wrong)
+    return (len(wrong) > 5 and poses == 0 and exchanged == (episode.verb == "swap" and len(episode.sides) == 2),
+            f"{len(wrong)} results of wrong pictures, {poses} with a pose; said was {', '.join(said)}")
 
 
 def check_told(episode, fault, shown, results, within):
@@ -112,16 +119,14 @@ def check_told(episode, fault, shown, results, within):
         return False, "spoiled no exposure"
     spoiled_us = spoiled * shown.period_us
     inside = between(results, spoiled_us, episode.end_us + within * shown.period_us)
-    if fault.state is None:
-        return check_no_pose(between(results, spoiled_us, episode.end_us), within)
     told = next((r for r in inside if r["state"] == fault.state and fault.reason in r["reason"]), None)
     if told is None:
         seen = ", ".join(sorted({f"{r['state']} ({r['reason']})" for r in inside}))
         return False, f"not told; said was {seen}"
-    frames = (told["utime"] - spoiled_us) / shown.period_us
-    out_ms = (told["publish_utime"] - spoiled_us) / 1000
-    return frames <= within, (f"{told['state']} ({told['reason']}) {frames:.1f} frames after the first exposure it spoiled, "
-                              f"published after {out_ms:.0f} ms")
+    out_us = told["publish_utime"] - spoiled_us
+    frames = out_us / shown.period_us
+    return frames <= within, (f"{told['state']} ({told['reason']}) published {frames:.1f} frames, {out_us / 1000:.0f} ms, "
+                              f"after the first exposure it spoiled")
 
 
 def check_back(episode, shown, results):
@@ -132,8 +137,6 @@ def check_back(episode, shown, results):
 
 
 def check_counted(episode, fault, shown, results, reports, until_us):
-    if fault.counter is None:
-        return True, ""
     grown = growth(reports, fault.counter, episode.start_us, until_us)
     if grown is None:
         return False, "no VIS_HEALTH before or after"
@@ -149,17 +152,26 @@ def check_counted(episode, fault, shown, results, reports, until_us):
         return 0 < grown <= len(lost) <= grown + others, (f"{len(lost)} exposures lost, {fault.counter} +{grown}, "
                                                           f"dropped elsewhere +{others}")
     if episode.verb == "clock":
-        return grown >= 2, f"{fault.counter} +{grown}"  # away and back
+        return grown == 2 * len(episode.sides), f"{fault.counter} +{grown}"  # away and back
+    if episode.verb == "off":
+        reopened = growth(reports, "camera_reopens", episode.start_us, until_us)
+        if reopened != len(episode.sides):
+            return False, f"camera_reopens +{reopened}"
     told = spells(inside, fault)
     good = grown == told and grown >= 1 and (episode.verb != "freeze" or grown == 1)
     return good, f"{told} spells told, {fault.counter} +{grown}"
 
 
-def check_faults(log, shown_path, rate_hz, cameras, within=5):
+def check_faults(log, shown_path, rate_hz, folder, within=5):
     shown = Shown(shown_path, rate_hz)
     results, reports = results_and_reports(log)
-    bad, found = False, episodes(cameras)
+    bad, found = False, episodes(folder)
     for episode in found:
+        if episode.verb in AROUND and episode.end_us is not None:
+            for good, said in AROUND[episode.verb](episode, shown, results, reports, folder, float(within)):
+                print(f"{'ok' if good else 'FAIL'}: {episode.name}: {said}")
+                bad = bad or not good
+            continue
         fault = episode.fault
         if fault is None or episode.end_us is None:
             print(f"FAIL: {episode.name}: {'is no fault' if fault is None else 'was not ended'}")
@@ -168,8 +180,9 @@ def check_faults(log, shown_path, rate_hz, cameras, within=5):
         told, how = check_told(episode, fault, shown, results, float(within))
         over, when, back = check_back(episode, shown, results)
         counted, count = check_counted(episode, fault, shown, results, reports, back["utime"] if back else episode.end_us)
-        bad = bad or not (told and over and counted)
-        for good, said in ((told, how), (over, when), (counted, count)):
+        no_pose, poses = check_no_pose(episode, shown, results) if episode.verb in NO_POSE else (True, "")
+        bad = bad or not (told and over and counted and no_pose)
+        for good, said in ((told, how), (no_pose, poses), (over, when), (counted, count)):
             if said:
                 print(f"{'ok' if good else 'FAIL'}: {episode.name}: {said}")
     if not found:
