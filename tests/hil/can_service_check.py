@@ -2,8 +2,9 @@
 """CAN against LCM of the same pelorusd: every result is one set with the same numbers; how
 long after the exposure each is there; and a bus that goes down is in VIS_HEALTH within five pictures.
 
-usage: can_service_check.py FOLDER RESULTS RATE_HZ    recordings of can_service.sh
-       can_service_check.py sets FOLDER               log.lcm and sets.json of gigevision.sh
+usage: can_service_check.py sets FOLDER NAME RESULTS   NAME.lcm and NAME.sets.json of can_service.sh
+       can_service_check.py live FOLDER                log.lcm and log.sets.json of gigevision.sh
+       can_service_check.py down FOLDER RATE_HZ        down.lcm and down_ns of can_service.sh
 Exit code 1 when it is not so.
 """
 
@@ -53,8 +54,8 @@ def wrong_numbers(result, one):
     return wrong, len(compared)
 
 
-def sets_in(folder):
-    with open(os.path.join(folder, "sets.json"), encoding="utf-8") as lines:
+def sets_in(folder, name):
+    with open(os.path.join(folder, name + ".sets.json"), encoding="utf-8") as lines:
         return [line for line in map(json.loads, filter(lambda l: l.startswith("{"), lines)) if "state" in line]
 
 
@@ -77,9 +78,10 @@ def compare(results, sets):
     return without, compared, wrong
 
 
-def check_sets(folder, expected):
-    results, reports = results_and_reports(log_of(folder, "service"))
-    sets = sets_in(folder)
+def check_sets(folder, name, results_published):
+    expected = int(results_published)
+    results, reports = results_and_reports(log_of(folder, name))
+    sets = sets_in(folder, name)
     counted = reports[-1]["can_sets_sent"]  # the last results leave after the last report
     bad = len(results) != expected or len(sets) != expected or not len(sets) - 3 <= counted <= len(sets)
     print(f"results on LCM {len(results)}, sets on CAN {len(sets)}, last VIS_HEALTH counts {counted}")
@@ -92,7 +94,7 @@ def check_sets(folder, expected):
 def check_live_sets(folder):
     """Of a run in which the bus may have been down: a result without a set has to be counted as unheard or dropped."""
     results, reports = results_and_reports(log_of(folder, "log"))
-    sets = sets_in(folder)
+    sets = sets_in(folder, "log")
     without, compared, wrong = compare(results, sets)
     uncounted = len(without) - reports[-1]["can_sets_unheard"] - reports[-1]["can_sets_dropped"]
     print(f"results on LCM {len(results)}, sets on CAN {len(sets)}, without a set {len(without)}, counted as unheard "
@@ -112,13 +114,12 @@ def check_down(folder, rate_hz):
     late_ms = (told["utime"] - down_us) / 1000
     print(f"bus down told after {late_ms:.0f} ms: {told['can_text']}")
     # Sooner than the next second's report would have had to come.
-    return late_ms > min(5e3 / rate_hz, 500)
+    return late_ms > min(5e3 / float(rate_hz), 500)
 
+
+CHECKS = {"sets": check_sets, "live": check_live_sets, "down": check_down}
 
 if __name__ == "__main__":
-    if len(sys.argv) == 3 and sys.argv[1] == "sets":
-        sys.exit(1 if check_live_sets(sys.argv[2]) else 0)
-    if len(sys.argv) != 4:
+    if len(sys.argv) < 3 or sys.argv[1] not in CHECKS:
         sys.exit(__doc__)
-    FAILURES = [check_sets(sys.argv[1], int(sys.argv[2])), check_down(sys.argv[1], float(sys.argv[3]))]
-    sys.exit(1 if any(FAILURES) else 0)
+    sys.exit(1 if CHECKS[sys.argv[1]](*sys.argv[2:]) else 0)

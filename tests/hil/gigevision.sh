@@ -134,7 +134,7 @@ lcm-logger -q -f "$work/log.lcm" &
 logger=$!
 started+=("$logger")
 if [ -n "$can" ]; then
-  "$programs/pelorus" can dump "$can" --sets --json >"$work/sets.json" 2>"$work/sets.txt" 3>&- &
+  "$programs/pelorus" can dump "$can" --sets --json >"$work/log.sets.json" 2>"$work/sets.txt" 3>&- &
   listeners+=($!)
   "$programs/example_autopilot" "$can" >"$work/autopilot.txt" 3>&- &
   listeners+=($!)
@@ -187,5 +187,5 @@ else
   }
   check poses "$log" "$work/replayed" "$tolerance_m" "$tolerance_deg"
 fi
-[ -z "$can" ] || python3 "$root/tests/hil/can_service_check.py" sets "$work" || failed=1
+[ -z "$can" ] || python3 "$root/tests/hil/can_service_check.py" live "$work" || failed=1
 [ "$failed" -eq 0 ] && echo "ok"
