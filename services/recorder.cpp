@@ -11,7 +11,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto kStep = std::chrono::milliseconds(100);           // between two looks at requests
 constexpr auto kRetry = std::chrono::seconds(1);                 // after a failure
-constexpr auto kLongestFinish = std::chrono::milliseconds(500);  // for what waits when recording ends
+constexpr auto kLongestFinish = std::chrono::milliseconds(350);  // for what waits when recording ends
 constexpr double kLeastPicture = 1e6;                            // bytes: a disk without room for it is full
 constexpr double kRoomAgain = 1.05;                              // of the least free space: no flicker at the limit
 

@@ -46,8 +46,10 @@ class Recorder {
 
   Recorder(const RecorderConfig& config, const FrameFormat& view, WriteCalibration write_calibration,
            std::function<void()> on_thread_start = {});
-  // What waits is still written, for half a second at most.
+  // What waits is still written, for a third of a second at most.
   ~Recorder() = default;
+  // Begins to end while others still work; the destructor waits for it.
+  void end() { thread_.request_stop(); }
 
   // False: it was already so.
   bool start() { return !wanted_.exchange(true); }

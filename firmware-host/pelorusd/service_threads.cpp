@@ -114,6 +114,7 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime, LogSink& log
 }
 
 void ServiceThreads::stop() {
+  if (recorder) recorder->end();
   if (head) head->stop();
   commands.reset();
   vision.reset();

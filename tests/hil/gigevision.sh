@@ -157,6 +157,7 @@ failed=0
 stopped_ns=$(date +%s%N)
 kill -TERM $service
 wait $service || { echo "FAIL: pelorusd ended with code $?"; failed=1; }
+echo "the service stopped within $((($(date +%s%N) - stopped_ns) / 1000000)) ms"
 kill -INT $logger
 wait $logger || true
 if [ -n "$can" ]; then
