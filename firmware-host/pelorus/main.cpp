@@ -1,4 +1,5 @@
-// pelorus: the tool. Parses the verb, runs it, turns an Error into one line on stderr and an exit code.
+// pelorus: the tool. Parses the verb, runs it, turns an Error into one line on stderr and an exit code, that of output
+// which did not arrive too.
 
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -6,8 +7,20 @@
 #include <vector>
 
 #include "firmware-host/pelorus/verbs.h"
+#include "firmware-host/runtime/standard_output.h"
 
 namespace {
+
+int tell(const pelorus::Error& error) {
+  std::fprintf(stderr, "pelorus: %s\n", error.message().c_str());
+  return pelorus::exit_code(error.code);
+}
+
+// The code of a verb that said what it had to say, if that could be written.
+int delivered(int code) {
+  const pelorus::Result<> printed = pelorus::flush_standard_output();
+  return printed ? code : tell(printed.error());
+}
 
 int run_tool(int argc, char** argv) {
   CLI::App app;
@@ -15,14 +28,12 @@ int run_tool(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return app.exit(e) == 0 ? 0 : pelorus::exit_code(pelorus::ErrorCode::bad_usage);
+    return app.exit(e) == 0 ? delivered(0) : pelorus::exit_code(pelorus::ErrorCode::bad_usage);
   }
   for (const pelorus::Verb& verb : verbs) {
     if (!verb.parser->parsed()) continue;
     const pelorus::Result<int> outcome = verb.run();
-    if (outcome.ok()) return outcome.value();
-    std::fprintf(stderr, "pelorus: %s\n", outcome.error().message().c_str());
-    return pelorus::exit_code(outcome.error().code);
+    return outcome.ok() ? delivered(outcome.value()) : tell(outcome.error());
   }
   return 2;
 }

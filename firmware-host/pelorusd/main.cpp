@@ -11,6 +11,7 @@
 #include "firmware-host/pelorusd/service_arguments.h"
 #include "firmware-host/runtime/config_loader.h"
 #include "firmware-host/runtime/settings_hash.h"
+#include "firmware-host/runtime/standard_output.h"
 
 namespace {
 
@@ -41,7 +42,10 @@ int check(const pelorus::ServiceConfig& config) {
   const std::string changed = pelorus::changed_settings(config);
   std::printf("configuration %s is good\n", pelorus::config_hash(config).c_str());
   std::printf("different from the defaults: %s\n", changed.empty() ? "nothing" : changed.c_str());
-  return 0;
+  const pelorus::Result<> printed = pelorus::flush_standard_output();
+  if (printed) return 0;
+  std::fprintf(stderr, "pelorusd: %s\n", printed.error().message().c_str());
+  return pelorus::exit_code(printed.error().code);
 }
 
 int run_service(int argc, char** argv) {

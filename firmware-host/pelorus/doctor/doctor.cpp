@@ -43,7 +43,8 @@ Verb add_doctor(CLI::App& app) {
   parser->add_flag("--json", arguments->json, "One JSON object in place of lines");
   parser->footer(
       "OK: as it should be. WARN: the service works, but worse than it could. FAIL: the dive would go wrong.\n"
-      "Exit codes: 0 no FAIL, 1 at least one FAIL, 2 usage, 5 configuration, 6 a file cannot be read.");
+      "Exit codes: 0 no FAIL, 1 at least one FAIL, 2 usage, 5 configuration, 6 a file cannot be read, or the\n"
+      "output not be written.");
   return {parser, [arguments] { return run_doctor(*arguments); }};
 }
 
