@@ -60,26 +60,19 @@ const char* lens_name(LensKind lens, CalibrationFormat format) {
   return "none";
 }
 
-struct TextFile {
-  fs::path path;
-  std::string text;
-};
 using TextFiles = std::vector<TextFile>;
 
-// None gets its name before all are written.
-Result<> write_files(const TextFiles& files, bool overwrite) {
-  std::vector<PartialFile> written;
+// The folders that a format consists of. The one around them has to be there: a mistyped path must not become one.
+Result<> make_folders(const TextFiles& files, const fs::path& out) {
+  const fs::path named = out.has_filename() ? out : out.parent_path();  // "rig/" is "rig"
+  const fs::path around = named.has_parent_path() ? named.parent_path() : fs::path(".");
+  std::error_code error;
+  if (!fs::is_directory(around, error))
+    return Error{ErrorCode::io, out.string(), "cannot be created: " + around.string() + " is no folder",
+                 "make that folder, or check the path"};
   for (const TextFile& file : files) {
-    std::error_code failed;
-    if (file.path.has_parent_path()) fs::create_directories(file.path.parent_path(), failed);
-    Result<PartialFile> partial = PartialFile::create(file.path, overwrite);
-    if (!partial) return partial.error();
-    written.push_back(std::move(partial.value()));
-    written.back().write(file.text);
-    if (Result<> flushed = written.back().flush(); !flushed) return flushed;
-  }
-  for (PartialFile& file : written) {
-    if (Result<> finished = file.finish(); !finished) return finished;
+    fs::create_directories(fs::absolute(file.path).parent_path(), error);
+    if (error) return Error{ErrorCode::io, out.string(), "cannot create: " + error.message(), "check path and rights"};
   }
   return Ok{};
 }
@@ -205,7 +198,8 @@ Result<> write_calibration(const StereoCalibration& c, CalibrationFormat format,
                  "convert the folder of the recording, whose images tell it, or add imageSize to the calibration"};
   const Result<TextFiles> files = files_of(c, format, out);
   if (!files) return files.error();
-  return write_files(files.value(), overwrite);
+  if (Result<> made = make_folders(files.value(), out); !made) return made;
+  return write_together(files.value(), overwrite);
 }
 
 }  // namespace pelorus

@@ -1,11 +1,14 @@
 #pragma once
 // PartialFile: a file that gets its name when it is whole: written beside it as NAME.partial, renamed by finish(),
-// removed when it is given up. Thread-bound.
+// removed when it is given up. A link keeps its place, its target is what is replaced; a device, a pipe or the like is
+// never replaced. Thread-bound.
 
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/base/result.h"
 
@@ -13,7 +16,7 @@ namespace pelorus {
 
 class PartialFile {
  public:
-  // Refuses a name that is taken, unless `overwrite`.
+  // Refuses a name that is taken, unless `overwrite`, and one that no file can have; the error says why.
   [[nodiscard]] static Result<PartialFile> create(const std::filesystem::path& path, bool overwrite);
   PartialFile(PartialFile&&) = default;
   PartialFile& operator=(PartialFile&&) = delete;
@@ -35,5 +38,13 @@ class PartialFile {
   std::unique_ptr<std::FILE, CloseFile> file_;
   bool failed_ = false;
 };
+
+struct TextFile {
+  std::filesystem::path path;
+  std::string text;
+};
+
+// All of the files or none: none gets its name before all are written.
+[[nodiscard]] Result<> write_together(const std::vector<TextFile>& files, bool overwrite);
 
 }  // namespace pelorus

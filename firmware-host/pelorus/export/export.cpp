@@ -34,13 +34,6 @@ fs::path default_path(const ExportArguments& arguments) {
   return folder / (whose + (arguments.format == "kitti" ? ".kitti.txt" : ".export.tum"));
 }
 
-Result<> write_file(const fs::path& path, const std::string& text, bool overwrite) {
-  Result<PartialFile> file = PartialFile::create(path, overwrite);
-  if (!file) return file.error();
-  file.value().write(text);
-  return file.value().finish();
-}
-
 // TUM or KITTI of one trajectory.
 Result<> export_trajectory(const ExportArguments& arguments, const EstimatedRun& run, const fs::path& path) {
   std::optional<BodyId> body;
@@ -51,14 +44,9 @@ Result<> export_trajectory(const ExportArguments& arguments, const EstimatedRun&
                  body ? "has no body " + std::to_string(arguments.body) : "has no frame with a pose",
                  body ? "objects.csv lists the numbers" : "see the states in frames.csv"};
   }
-  if (arguments.format == "tum") return write_file(path, tum_text(poses), arguments.overwrite);
-  // The times first: poses without them would be half of it.
-  const fs::path times = path.string() + ".times";
-  if (auto done = write_file(times, kitti_times_text(poses), arguments.overwrite); !done) return done.error();
-  auto done = write_file(path, kitti_text(poses), arguments.overwrite);
-  std::error_code ignored;
-  if (!done) fs::remove(times, ignored);
-  return done;
+  if (arguments.format == "tum") return write_together({{path, tum_text(poses)}}, arguments.overwrite);
+  return write_together({{path, kitti_text(poses)}, {path.string() + ".times", kitti_times_text(poses)}},
+                        arguments.overwrite);
 }
 
 // scene.ply and a body_N.ply each, or one body's alone.
@@ -78,12 +66,13 @@ Result<int> export_clouds(const ExportArguments& arguments) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) return Error{ErrorCode::io, folder.string(), "cannot create: " + error.message(), "check its rights"};
+  std::vector<TextFile> files;
   for (const BodyId body : bodies) {
-    const fs::path path =
-        folder / (body == kWorldBody ? std::string("scene.ply") : "body_" + std::to_string(body.value) + ".ply");
-    if (auto done = write_file(path, ply_text(points.value(), body), arguments.overwrite); !done) return done.error();
-    std::printf("%s\n", path.c_str());
+    const std::string name = body == kWorldBody ? "scene.ply" : "body_" + std::to_string(body.value) + ".ply";
+    files.push_back({folder / name, ply_text(points.value(), body)});
   }
+  if (const Result<> done = write_together(files, arguments.overwrite); !done) return done.error();
+  for (const TextFile& file : files) std::printf("%s\n", file.path.c_str());
   return done_exit_code(arguments.run);
 }
 
@@ -98,9 +87,10 @@ Result<int> run_export(const ExportArguments& arguments) {
   if (!run) return run.error();
   if (run.value().empty()) return Error{ErrorCode::bad_input, arguments.run, "the run has no frames", ""};
   const fs::path path = arguments.out.empty() ? default_path(arguments) : fs::path(arguments.out);
-  const Result<> done = arguments.format == "mcap"  ? export_mcap(run.value(), path, arguments.overwrite)
-                        : arguments.format == "csv" ? write_file(path, csv_text(run.value()), arguments.overwrite)
-                                                    : export_trajectory(arguments, run.value(), path);
+  const Result<> done = arguments.format == "mcap" ? export_mcap(run.value(), path, arguments.overwrite)
+                        : arguments.format == "csv"
+                            ? write_together({{path, csv_text(run.value())}}, arguments.overwrite)
+                            : export_trajectory(arguments, run.value(), path);
   if (!done) return done.error();
   std::printf("%s\n", path.c_str());
   return done_exit_code(arguments.run);

@@ -1,10 +1,6 @@
 #include "firmware-host/pelorus/report/page.h"
 
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
-#include <memory>
-#include <system_error>
+#include "firmware-host/runtime/partial_file.h"
 
 namespace pelorus {
 namespace {
@@ -13,36 +9,6 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kDataMark = "\"PELORUS_RUN_DATA\"";
 constexpr int kHalvings = 6;
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-Error io_error(const fs::path& path, const std::string& detail) {
-  return {ErrorCode::io, path.string(), detail, "check path, rights and free space"};
-}
-
-bool write_whole(const fs::path& path, const std::string& text) {
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "wb"));
-  if (!file) return false;
-  const bool written = std::fwrite(text.data(), 1, text.size(), file.get()) == text.size();
-  return written && std::fflush(file.get()) == 0;
-}
-
-Result<Ok> write_atomically(const fs::path& path, const std::string& text) {
-  const fs::path partial = path.string() + ".partial";
-  std::error_code error;
-  if (!write_whole(partial, text)) {
-    const std::string reason = std::strerror(errno);
-    fs::remove(partial, error);
-    return io_error(path, "cannot write the page: " + reason);
-  }
-  fs::rename(partial, path, error);
-  if (!error) return Ok{};
-  const std::string reason = error.message();
-  fs::remove(partial, error);
-  return io_error(path, "cannot put the page in its place: " + reason);
-}
 
 }  // namespace
 
@@ -75,7 +41,9 @@ Result<Ok> write_page(const fs::path& file, const ReportInput& input, std::size_
   for (int halving = 0;; ++halving) {
     Result<std::string> page = filled_page(page_template(), page_data(input, budget));
     if (!page) return page.error();
-    if (page.value().size() <= largest || halving == kHalvings) return write_atomically(file, page.value());
+    if (page.value().size() <= largest || halving == kHalvings) {
+      return write_together({{file, std::move(page.value())}}, true);
+    }
     budget = budget.halved();
   }
 }

@@ -79,6 +79,7 @@ TEST_F(Calib, ConvertReplacesNothingUnlessToldTo) {
 // Files that may not grow stand for a full disk.
 TEST_F(Calib, AFullDiskLeavesNoFileUnderTheFinalName) {
   const fs::path root = euroc();
+  fs::create_directory(folder_ / "full");
   const auto former = std::signal(SIGXFSZ, SIG_IGN);
   rlimit limit{};
   getrlimit(RLIMIT_FSIZE, &limit);

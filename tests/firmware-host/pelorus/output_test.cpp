@@ -47,5 +47,57 @@ TEST_F(Output, WhatCannotBePrintedIsAnError) {
   }
 }
 
+TEST_F(Output, ReportReplacesNoPipeAndFollowsALink) {
+  replay();
+  const std::string pipe = (folder_.path() / "pipe").string(), link = (folder_.path() / "link.html").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const Outcome refused = run_tool("report " + run_ + " --file " + pipe);
+  if (holds(refused.text, "without the report page")) GTEST_SKIP() << "built without the page";
+  EXPECT_EQ(refused.exit_code, 6) << refused.text;
+  EXPECT_TRUE(holds(refused.text, "a pipe or the like")) << refused.text;
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  const fs::path target = folder_.path() / "kept" / "page.html";
+  write_text(target, "earlier");
+  fs::create_symlink(target, link);
+  EXPECT_EQ(run_tool("report " + run_ + " --file " + link).exit_code, 0);
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_GT(fs::file_size(target), 1000U);
+  fs::remove(target);
+  const Outcome dangling = run_tool("report " + run_ + " --file " + link);
+  EXPECT_EQ(dangling.exit_code, 6) << dangling.text;
+  EXPECT_TRUE(holds(dangling.text, "is a link to nothing (remove the link")) << dangling.text;
+}
+
+TEST_F(Output, AMissingFolderIsNamed) {
+  replay();
+  const std::string file = (folder_.path() / "nope" / "x").string();
+  for (const std::string& arguments :
+       {"export " + run_ + " --format csv --out " + file, "calib convert " + dive_ + " --to opencv --out " + file,
+        "calib convert " + dive_ + " --to ros --out " + file, "calib convert " + dive_ + " --to euroc --out " + file}) {
+    const Outcome outcome = run_tool(arguments);
+    EXPECT_EQ(outcome.exit_code, 6) << arguments;
+    EXPECT_TRUE(holds(outcome.text, "nope ")) << outcome.text;
+    EXPECT_TRUE(holds(outcome.text, "(make that folder, or check the path)")) << outcome.text;
+    EXPECT_FALSE(fs::exists(folder_.path() / "nope")) << arguments;
+  }
+}
+
+// A limit on the size of files stands for a disk that fills up: the same calls fail.
+TEST_F(Output, PointCloudsAreWrittenAllOrNone) {
+  replay();
+  const std::string point = ",1,0.1,0.2,0.3,0.01,3,1,2,100\n";
+  std::string points = "object_id,track,p_x,p_y,p_z,spread_m,views,first_ns,last_ns,gray\n0" + point;
+  for (int i = 0; i < 400; ++i) points += "1" + point;
+  write_text(run_ + "/points.csv", points);
+  const std::string clouds = (folder_.path() / "clouds").string();
+  const std::string arguments = "export " + run_ + " --format ply --out " + clouds;
+  const Outcome full = run_tool(arguments, "trap '' XFSZ; ulimit -f 4; ");
+  EXPECT_EQ(full.exit_code, 6) << full.text;
+  EXPECT_TRUE(fs::is_empty(clouds)) << full.text;
+  const Outcome again = run_tool(arguments);
+  EXPECT_EQ(again.exit_code, 0) << again.text;
+  EXPECT_TRUE(fs::exists(clouds + "/scene.ply") && fs::exists(clouds + "/body_1.ply"));
+}
+
 }  // namespace
 }  // namespace pelorus
