@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -236,17 +235,6 @@ cv::Mat Overlay::draw(const ImageView& left, const FrameResult& result, std::spa
   cv::Mat banner = canvas(cv::Rect(0, 0, left.width, banner_height));
   draw_banner(banner, result, points);
   return canvas;
-}
-
-Result<Ok> write_picture(const std::filesystem::path& path, const cv::Mat& picture) {
-  const Error failed{ErrorCode::io, path.string(), "cannot write the picture", "check rights and free space"};
-  try {
-    // Low compression: writing pictures must not dwarf the step.
-    if (!cv::imwrite(path.string(), picture, {cv::IMWRITE_PNG_COMPRESSION, 1})) return failed;
-  } catch (const cv::Exception&) {
-    return failed;
-  }
-  return Ok{};
 }
 
 }  // namespace pelorus

@@ -5,12 +5,10 @@
 // last centroids for the trails: feed it every frame in order, draw the ones wanted. Thread-bound.
 
 #include <deque>
-#include <filesystem>
 #include <map>
 #include <opencv2/core.hpp>
 #include <span>
 
-#include "core/base/result.h"
 #include "core/model/stage_data.h"
 
 namespace pelorus {
@@ -40,8 +38,5 @@ class Overlay {
   Timestamp previous_time_;
   bool has_previous_ = false;
 };
-
-// PNG; an error names the file.
-[[nodiscard]] Result<Ok> write_picture(const std::filesystem::path& path, const cv::Mat& picture);
 
 }  // namespace pelorus

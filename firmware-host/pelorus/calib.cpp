@@ -15,11 +15,11 @@
 #include "core/geometry/rectifier.h"
 #include "drivers/replay/dataset.h"
 #include "drivers/replay/image_file.h"
+#include "firmware-host/pelorus/picture_file.h"
 #include "firmware-host/runtime/calibration.h"
 #include "firmware-host/runtime/calibration_writer.h"
 #include "firmware-host/runtime/row_check.h"
 #include "firmware-host/runtime/side_check.h"
-#include "services/overlay.h"
 
 namespace pelorus {
 namespace {
@@ -182,6 +182,9 @@ Result<> check_pair(const SourcePair& pair, const Rectifier& rectifier, const st
 }
 
 Result<int> run_check(const CheckArguments& arguments) {
+  if (!arguments.picture.empty()) {
+    if (auto usable = check_picture_name(arguments.picture); !usable) return usable.error();
+  }
   auto read = load_calibration(arguments.calibration.empty() ? arguments.input : arguments.calibration);
   if (!read) return read.error();
   LoadedCalibration loaded = std::move(read.value());

@@ -9,6 +9,7 @@
 #include "firmware-host/pelorus/bench/latency_picture.h"
 #include "firmware-host/pelorus/bench/latency_report.h"
 #include "firmware-host/pelorus/bench/latency_run.h"
+#include "firmware-host/pelorus/picture_file.h"
 #include "firmware-host/pelorus/progress_bar.h"
 #include "firmware-host/pelorus/replay/replay_interrupt.h"
 #include "firmware-host/runtime/config_loader.h"
@@ -57,6 +58,9 @@ Result<LatencyOptions> options_of(const LatencyArguments& arguments) {
 Result<int> run_bench_latency(const LatencyArguments& arguments) {
   Result<LatencyOptions> options = options_of(arguments);
   if (!options) return options.error();
+  if (!arguments.picture.empty()) {
+    if (const Result<> usable = check_picture_name(arguments.picture); !usable) return usable.error();
+  }
   const auto pairs = load_pairs(arguments);
   if (!pairs) return pairs.error();
   LatencyContext context{options.value(), arguments.dataset, pairs.value()->calibration.left.width,

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <string>
 
-#include "services/overlay.h"
+#include "firmware-host/pelorus/picture_file.h"
 
 namespace pelorus {
 namespace {

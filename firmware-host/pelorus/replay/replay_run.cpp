@@ -9,6 +9,7 @@
 #include "core/base/nearest_rank.h"
 #include "core/geometry/rectifier.h"
 #include "core/pipeline/pipeline.h"
+#include "firmware-host/pelorus/picture_file.h"
 #include "firmware-host/pelorus/replay/pair_feed.h"
 #include "firmware-host/pelorus/results/incomplete_mark.h"
 #include "firmware-host/pelorus/results/result_files.h"

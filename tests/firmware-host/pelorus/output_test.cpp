@@ -99,5 +99,41 @@ TEST_F(Output, PointCloudsAreWrittenAllOrNone) {
   EXPECT_TRUE(fs::exists(clouds + "/scene.ply") && fs::exists(clouds + "/body_1.ply"));
 }
 
+TEST_F(Output, APictureIsRefusedBeforeTheWorkWithItsOwnCure) {
+  ASSERT_EQ(run_tool("synth " + small_scene(folder_, 3) + " --out " + dive_).exit_code, 0);
+  fs::create_directory(folder_.path() / "a.png");
+  struct Case {
+    std::string name;
+    int exit_code;
+    const char* said;
+  };
+  for (const Case& c : {Case{"q.txt", 2, "let it end in .png"}, Case{"a.png", 6, "is a folder"},
+                        Case{"nope/q.png", 6, "make that folder"}}) {
+    const std::string picture = (folder_.path() / c.name).string();
+    for (const std::string& arguments :
+         {"calib check " + dive_ + " --out " + picture,
+          "bench latency " + dive_ + " --frames 3 --seconds 0.2 --normal --picture " + picture}) {
+      const Outcome outcome = run_tool(arguments);
+      EXPECT_EQ(outcome.exit_code, c.exit_code) << arguments << "\n" << outcome.text;
+      EXPECT_TRUE(holds(outcome.text, c.said)) << outcome.text;
+      EXPECT_EQ(std::count(outcome.text.begin(), outcome.text.end(), '\n'), 1) << "one line\n" << outcome.text;
+    }
+  }
+  const fs::path picture = folder_.path() / "q.png";
+  EXPECT_EQ(run_tool("calib check " + dive_ + " --out " + picture.string()).exit_code, 0);
+  EXPECT_GT(fs::file_size(picture), 100U);
+  EXPECT_FALSE(fs::exists(picture.string() + ".partial"));
+}
+
+TEST_F(Output, APictureThatDoesNotFitKeepsTheEarlierOne) {
+  ASSERT_EQ(run_tool("synth " + small_scene(folder_, 3) + " --out " + dive_).exit_code, 0);
+  const fs::path picture = folder_.path() / "q.png";
+  write_text(picture, "earlier");
+  const Outcome full = run_tool("calib check " + dive_ + " --out " + picture.string(), "trap '' XFSZ; ulimit -f 1; ");
+  EXPECT_EQ(full.exit_code, 6) << full.text;
+  EXPECT_TRUE(holds(full.text, "free space")) << full.text;
+  EXPECT_EQ(read_text(picture), "earlier");
+}
+
 }  // namespace
 }  // namespace pelorus
