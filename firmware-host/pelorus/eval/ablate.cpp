@@ -35,12 +35,15 @@ struct AblateArguments {
   bool json = false;
 };
 
+constexpr const char* kAllOn = "all_on";  // the folder of the run with all steps
+
 // Where runs go: the user's folder, or one of our own that disappears.
 class WorkFolder {
  public:
-  [[nodiscard]] static Result<WorkFolder> create(const std::string& wanted) {
+  [[nodiscard]] static Result<WorkFolder> create(const std::string& wanted, bool overwrite) {
     WorkFolder folder;
     if (!wanted.empty()) {
+      if (Result<> usable = make_usable(wanted, overwrite); !usable) return usable.error();
       folder.path_ = wanted;
       return folder;
     }
@@ -65,6 +68,17 @@ class WorkFolder {
 
  private:
   WorkFolder() = default;
+  // An earlier ablation is replaced when asked for; anything else in the folder is not ours to touch.
+  static Result<> make_usable(const fs::path& folder, bool overwrite) {
+    std::error_code error;
+    const bool earlier = fs::exists(folder / kAllOn, error) || fs::exists(folder / "dataset", error) ||
+                         fs::exists(folder / "dataset.partial", error);  // of an ablation that was killed
+    if (overwrite && earlier) return Ok{};
+    Result<Ok> ready = prepare_output_folder(folder, false);
+    if (ready || !overwrite) return ready;
+    return Error{ErrorCode::io, folder.string(), "the folder holds something else than an earlier ablation",
+                 "give --out another folder"};
+  }
   fs::path path_;
   bool temporary_ = false;
 };
@@ -118,7 +132,7 @@ std::vector<AblationRun> run_all(const std::string& dataset, const AblateArgumen
     run.step_off = i == 0 ? "" : steps[i - 1];
     PipelineConfig changed = config;
     switch_off(run.step_off, changed);
-    const std::string name = i == 0 ? "all_on" : "without_" + run.step_off;
+    const std::string name = i == 0 ? kAllOn : "without_" + run.step_off;
     const std::string title = name + " (" + std::to_string(i + 1) + "/" + std::to_string(steps.size() + 1) + ")";
     Result<RunEvaluation> result = replay_and_evaluate(dataset, arguments, changed, folder / name, title, run);
     if (ReplayInterrupt::requested()) break;
@@ -126,6 +140,7 @@ std::vector<AblationRun> run_all(const std::string& dataset, const AblateArgumen
       run.result = std::move(result.value());
     } else {
       run.failure = result.error().message();
+      run.failure_code = result.error().code;
     }
     runs.push_back(std::move(run));
   }
@@ -152,7 +167,7 @@ Result<int> run_verb(const AblateArguments& arguments) {
   const Result<std::vector<std::string>> steps = chosen_steps(arguments);
   if (!steps) return steps.error();
   if (Result<> usable = check_recording(arguments.dataset, arguments.calibration); !usable) return usable.error();
-  const Result<WorkFolder> folder = WorkFolder::create(arguments.out);
+  const Result<WorkFolder> folder = WorkFolder::create(arguments.out, arguments.overwrite);
   if (!folder) return folder.error();
   const ReplayInterrupt interrupt;
   std::string dataset = arguments.dataset;
@@ -165,14 +180,16 @@ Result<int> run_verb(const AblateArguments& arguments) {
   }
   const std::vector<AblationRun> runs = run_all(dataset, arguments, config, steps.value(), folder.value().path());
   std::fputs((arguments.json ? to_json(runs) + "\n" : to_table(runs)).c_str(), stdout);
-  if (!arguments.out.empty() && !arguments.json) std::printf("runs  %s\n", arguments.out.c_str());
+  const bool kept = !arguments.out.empty() && !runs.empty() && runs.front().result;
+  if (kept && !arguments.json) std::printf("runs  %s\n", arguments.out.c_str());
   if (ReplayInterrupt::requested()) return kInterruptedExitCode;
   if (runs.front().broke_off) {
     std::fprintf(stderr, "pelorus: the recording broke off: %s\n", runs.front().failure.c_str());
     return kBrokeOffExitCode;
   }
   if (!runs.front().result) {
-    return Error{ErrorCode::bad_input, arguments.dataset, "the run with all steps failed: " + runs.front().failure, ""};
+    return Error{runs.front().failure_code, arguments.dataset, "the run with all steps failed: " + runs.front().failure,
+                 ""};
   }
   if (!runs.front().result->has_truth) {
     return Error{ErrorCode::bad_input, arguments.dataset, "the data set holds no truth to compare with", ""};

@@ -12,7 +12,8 @@ namespace pelorus {
 struct AblationRun {
   std::string step_off;  // empty: every step is on
   std::optional<RunEvaluation> result;
-  std::string failure;     // why there is no result
+  std::string failure;  // why there is no result
+  ErrorCode failure_code = ErrorCode::bad_input;
   bool broke_off = false;  // the recording, see failure
   std::string incomplete;  // what the run went on without; empty: nothing
 };

@@ -135,5 +135,33 @@ TEST_F(Output, APictureThatDoesNotFitKeepsTheEarlierOne) {
   EXPECT_EQ(read_text(picture), "earlier");
 }
 
+TEST_F(Output, AblateRefusesAFolderThatIsNotItsOwnBeforeItRuns) {
+  replay();
+  write_text(folder_.path() / "file", "");
+  const std::string ablate = "ablate " + dive_ + " --frames 3 --only net_filter --out ";
+  const Outcome file = run_tool(ablate + (folder_.path() / "file" / "x").string());
+  EXPECT_EQ(file.exit_code, 6) << file.text;
+  EXPECT_FALSE(holds(file.text, "runs ")) << file.text;
+  for (const char* overwrite : {"", " --overwrite"}) {
+    const Outcome foreign = run_tool(ablate + run_ + overwrite);
+    EXPECT_EQ(foreign.exit_code, 6) << foreign.text;
+    EXPECT_FALSE(fs::exists(run_ + "/all_on")) << foreign.text;
+    EXPECT_TRUE(fs::exists(run_ + "/camera.tum"));
+  }
+  const std::string own = (folder_.path() / "ablation").string();
+  EXPECT_EQ(run_tool(ablate + own).exit_code, 0);
+  const Outcome taken = run_tool(ablate + own);
+  EXPECT_EQ(taken.exit_code, 6);
+  EXPECT_TRUE(holds(taken.text, "--overwrite")) << taken.text;
+  EXPECT_EQ(run_tool(ablate + own + " --overwrite").exit_code, 0);
+}
+
+TEST_F(Output, AblateOnAFullDiskHasTheCodeOfOutput) {
+  ASSERT_EQ(run_tool("synth " + small_scene(folder_, 20) + " --out " + dive_).exit_code, 0);
+  const Outcome full = run_tool("ablate " + dive_ + " --only net_filter --out " + run_, "trap '' XFSZ; ulimit -f 4; ");
+  EXPECT_EQ(full.exit_code, 6) << full.text;
+  EXPECT_FALSE(holds(full.text, "runs ")) << full.text;
+}
+
 }  // namespace
 }  // namespace pelorus
