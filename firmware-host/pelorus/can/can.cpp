@@ -46,13 +46,15 @@ Verb add_can(CLI::App& app) {
   dump->add_option("--seconds", dump_options->seconds, "Interface: end after so long")->check(above_zero());
   dump->add_option("--count", dump_options->count, "End after so many lines")->check(above_zero());
   add_base_id(dump, dump_options->base_id);
-  dump->footer("Exit codes: 0 done, 2 usage, 3 lines that are none of candump, 6 input/output, 7 no such interface.");
+  dump->footer(
+      "Exit codes: 0 done, 2 usage, 3 lines that are none of candump, or no whole frame, 6 input/output, 7 no such "
+      "interface.");
   auto arguments = std::make_shared<CanArguments>();
   CLI::App* dbc = parser->add_subcommand("dbc", "Print the DBC of the contract");
   add_base_id(dbc, arguments->base_id);
   CLI::App* exporter = parser->add_subcommand("export", "Write the files made from the contract into a source tree");
   exporter->add_option("--tree", arguments->tree, "Root of the sources")->capture_default_str();
-  dbc->footer("Exit codes: 0 done, 2 usage.");
+  dbc->footer("Exit codes: 0 done, 2 usage, 6 output.");
   exporter->footer("Exit codes: 0 done, 2 usage, 3 the page lacks its markers, 6 input/output.");
   return {parser, [dump, dbc, dump_options, arguments] {
             if (dump->parsed()) return run_can_dump(*dump_options);

@@ -20,7 +20,8 @@ namespace {
 constexpr int kBadInputExitCode = 3;
 
 bool is_finished(const CanDumpOptions& options, const CanDump& dump) {
-  return ReplayInterrupt::requested() || (options.count > 0 && dump.lines() >= options.count);
+  return ReplayInterrupt::requested() || std::ferror(stdout) != 0 ||
+         (options.count > 0 && dump.lines() >= options.count);
 }
 
 // Every readable line is shown; the ones that are none are counted, the first is named.
@@ -40,6 +41,17 @@ int read_log(std::istream& in, const CanDumpOptions& options, CanDump& dump) {
     dump.note_bad_line();
   }
   return dump.counts().bad_lines > 0 ? kBadInputExitCode : 0;
+}
+
+// Out of a recording something has to come: one of which nothing does is the wrong file, or what is left of one.
+Result<int> judge_log(const CanDumpOptions& options, const CanDumpCounts& counts, int code) {
+  if (code != 0 || counts.frames > 0 || ReplayInterrupt::requested()) return code;
+  if (counts.bad > 0) {
+    return Error{ErrorCode::bad_input, options.source,
+                 "no frame of the contract is whole, of " + std::to_string(counts.bad), "record it anew: candump -l"};
+  }
+  if (counts.foreign + counts.error_frames > 0) return code;
+  return Error{ErrorCode::bad_input, options.source, "holds no frame", "is it the log of candump -l or -L?"};
 }
 
 // FD when the interface offers it: then both formats arrive.
@@ -149,17 +161,17 @@ Result<int> run_can_dump(const CanDumpOptions& options) {
   Result<int> outcome = 0;
   std::error_code ignored;
   if (options.source == "-") {
-    outcome = read_log(std::cin, options, dump);
+    outcome = judge_log(options, dump.counts(), read_log(std::cin, options, dump));
   } else if (std::filesystem::exists(options.source, ignored)) {
     std::ifstream log(options.source);
     if (!log || std::filesystem::is_directory(options.source, ignored))
       return Error{ErrorCode::io, options.source, "cannot be read", "a log of candump -l or -L"};
-    outcome = read_log(log, options, dump);
+    outcome = judge_log(options, dump.counts(), read_log(log, options, dump));
   } else {
     outcome = read_bus(options, dump);
   }
   std::fflush(stdout);
-  if (outcome) std::fputs(dump.summary().c_str(), stderr);
+  if (outcome || dump.counts().bad > 0) std::fputs(dump.summary().c_str(), stderr);
   return outcome;
 }
 

@@ -58,7 +58,8 @@ class CanDump {
 [[nodiscard]] std::string set_text(const pelorus_can_estimate& estimate, pelorus_can_link link, bool json);
 
 // Reads the source to its end, Ctrl-C or a limit; prints to standard output, the summary to standard error. Returns 0,
-// or 3 when a log had lines that are none. Errors: device (no interface), io (no file), bad_input (nothing readable).
+// or 3 when a log had lines that are none. Errors: device (no interface), io (no file), bad_input (no frame in a log,
+// or none whole).
 [[nodiscard]] Result<int> run_can_dump(const CanDumpOptions& options);
 
 }  // namespace pelorus

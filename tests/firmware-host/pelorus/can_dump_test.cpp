@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <memory>
 
 #include "services/can/contract_text.h"
+#include "tests/support/temporary_folder.h"
 
 namespace pelorus {
 namespace {
@@ -128,6 +131,27 @@ TEST(CanDump, ASourceThatIsNeitherFileNorInterfaceIsAnError) {
   const auto outcome = run_can_dump(options);
   ASSERT_FALSE(outcome.ok());
   EXPECT_EQ(outcome.error().code, ErrorCode::device);
+}
+
+TEST(CanDump, ALogWithoutAWholeFrameIsAnError) {
+  const test::TemporaryFolder folder;
+  const std::string log = (folder.path() / "x.log").string();
+  CanDumpOptions options;
+  options.source = log;
+  test::write_text(log, "");
+  const auto empty = run_can_dump(options);
+  ASSERT_FALSE(empty.ok());
+  EXPECT_EQ(empty.error().code, ErrorCode::bad_input);
+  EXPECT_NE(empty.error().message().find("holds no frame"), std::string::npos);
+  std::array<char, 8> id{};
+  std::snprintf(id.data(), id.size(), "%03X", velocity_frame().id);
+  test::write_text(log, std::string("(1700000000.050000) can0 ") + id.data() + "#1122\n");  // cut short
+  const auto cut = run_can_dump(options);
+  ASSERT_FALSE(cut.ok());
+  EXPECT_EQ(cut.error().code, ErrorCode::bad_input);
+  EXPECT_NE(cut.error().message().find("no frame of the contract is whole, of 1"), std::string::npos);
+  test::write_text(log, "(1700000000.050000) can0 7FF#1122\n");
+  EXPECT_TRUE(run_can_dump(options).ok()) << "a bus of others";
 }
 
 TEST(CanDump, LinesThatAreNoneOfCandumpMakeExitCodeThreeAfterTheRestWasShown) {
