@@ -1,6 +1,7 @@
 #include "firmware-host/pelorus/bus_options.h"
 
 #include "firmware-host/runtime/config_loader.h"
+#include "firmware-host/runtime/lcm_url.h"
 
 namespace pelorus {
 
@@ -17,6 +18,8 @@ Result<LcmConfig> BusOptions::resolve() const {
     if (const Result<Ok> applied = apply_config_file(file, config); !applied) return applied.error();
   }
   if (!url_.empty()) config.lcm.url = url_;
+  if (!url_.empty() && !is_lcm_url(url_))
+    return Error{ErrorCode::io, "--url", "'" + url_ + "' is no address of LCM", kLcmUrlCure};
   if (!vehicle_.empty()) config.lcm.vehicle = vehicle_;
   return config.lcm;
 }

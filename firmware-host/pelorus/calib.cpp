@@ -255,7 +255,8 @@ Verb add_calib(CLI::App& app) {
       check->add_option("--image-right", check_arguments->image_right, "Raw image of the right camera");
   left->needs(right);
   right->needs(left);
-  check->add_option("--pair", check_arguments->pair, "Which pair of the data set, counted from 0");
+  check->add_option("--pair", check_arguments->pair, "Which pair of the data set, counted from 0")
+      ->check(whole_from_zero());
   check->add_option("--out", check_arguments->picture, "Picture (PNG) of the rectified pair with horizontal lines");
   check->footer("Exit codes: 0 checked (warnings included), 2 usage, 3 bad images, 4 calibration, 6 input/output.");
 

@@ -4,6 +4,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <string>
@@ -26,6 +28,31 @@ struct Verb {
             return good ? std::string() : "'" + text + "' is not a number above 0";
           },
           "above 0"};
+}
+
+// Counts: a number that wraps around or is cut to what an integer holds would be another one than was written.
+[[nodiscard]] inline CLI::Validator count_above_zero() {
+  return {[](std::string& text) {
+            std::string problem = above_zero()(text);
+            int number = 0;
+            const char* const end = text.data() + text.size();
+            const auto [rest, error] = std::from_chars(text.data(), end, number);
+            if (problem.empty() && (error != std::errc{} || rest != end))
+              problem = "'" + text + "' is not a whole number from 1 to 2147483647";
+            return problem;
+          },
+          "above 0"};
+}
+
+[[nodiscard]] inline CLI::Validator whole_from_zero() {
+  return {[](std::string& text) {
+            std::uint64_t number = 0;
+            const char* const end = text.data() + text.size();
+            const auto [rest, error] = std::from_chars(text.data(), end, number);
+            const bool good = error == std::errc{} && rest == end;
+            return good ? std::string() : "'" + text + "' is not a whole number from 0 to 18446744073709551615";
+          },
+          "0 or above"};
 }
 
 // CLI::IsMember, whose message tells neither what to do nor, after a transformation, the words themselves.

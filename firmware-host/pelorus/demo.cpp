@@ -112,7 +112,7 @@ Verb add_demo(CLI::App& app) {
   parser->add_option("--out", arguments->out, "Folder for images, results and pictures; an earlier demo is replaced")
       ->capture_default_str();
   parser->add_option("--scene", arguments->scene, "Another shipped scene or scene file")->capture_default_str();
-  parser->add_option("--frames", arguments->frames, "Render the first N frames only");
+  parser->add_option("--frames", arguments->frames, "Render the first N frames only")->check(count_above_zero());
   parser->footer("Exit codes: 0 done, 2 usage, 3 bad input, 4 calibration, 5 scene file, 6 output, 130 interrupted.");
   return {parser, [arguments] { return run_verb(*arguments); }};
 }

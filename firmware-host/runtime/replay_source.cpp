@@ -18,12 +18,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// As lcm-logger names them (lcmlog-2014-05-01.00), and as people do.
+bool is_named_as_log(const fs::path& path) {
+  return path.filename().string().find("lcm") != std::string::npos || path.extension() == ".log";
+}
+
+// Anything but a scene would be told off as bad YAML.
+Result<> check_scene_name(const fs::path& path) {
+  if (path.extension() == ".yaml" || path.extension() == ".yml") return Ok{};
+  if (is_named_as_log(path))
+    return Error{ErrorCode::bad_input, path.string(), "the LCM log is damaged: it does not begin with an event",
+                 "copy it again, or cut off what comes before the first event"};
+  return Error{ErrorCode::bad_input, path.string(), "is neither an LCM log nor a scene file (.yaml)",
+               "pass the folder of a recording, an LCM log or a scene file"};
+}
+
 Result<std::unique_ptr<StereoSource>> open_scene(const std::string& path) {
-  // Anything else would be told off as bad YAML.
-  const std::string extension = fs::path(path).extension().string();
-  if (extension != ".yaml" && extension != ".yml")
-    return Error{ErrorCode::bad_input, path, "is neither an LCM log nor a scene file (.yaml)",
-                 "pass the folder of a recording, an LCM log or a scene file"};
   auto scene = synthetic::load_scene(path);
   if (!scene) return scene.error();
   return std::unique_ptr<StereoSource>(std::make_unique<synthetic::SyntheticSource>(std::move(scene.value())));
@@ -68,6 +78,7 @@ Result<std::unique_ptr<StereoSource>> open_source(const std::string& dataset, co
   if (!recording) {
     const Result<std::string> scene = find_scene(dataset);
     if (!scene) return no_such_dataset(dataset, scene.error());
+    if (const Result<> named = check_scene_name(scene.value()); !named) return named.error();
     if (!calibration_file.empty())
       return Error{ErrorCode::bad_usage, "--calib", "a synthetic scene brings its own calibration",
                    "leave --calib out"};

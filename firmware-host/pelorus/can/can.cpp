@@ -44,7 +44,7 @@ Verb add_can(CLI::App& app) {
   dump->add_flag("--sets", dump_options->sets, "One line per estimate, as the autopilot's receiver hands it out");
   dump->add_flag("--json", dump_options->json, "One JSON object per line");
   dump->add_option("--seconds", dump_options->seconds, "Interface: end after so long")->check(above_zero());
-  dump->add_option("--count", dump_options->count, "End after so many lines")->check(above_zero());
+  dump->add_option("--count", dump_options->count, "End after so many lines")->check(count_above_zero());
   add_base_id(dump, dump_options->base_id);
   dump->footer(
       "Exit codes: 0 done, 2 usage, 3 lines that are none of candump, or no whole frame, 6 input/output, 7 no such "

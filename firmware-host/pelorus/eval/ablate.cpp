@@ -210,7 +210,7 @@ Verb add_ablate(CLI::App& app) {
   parser->add_option("--config", arguments->configs, "Settings file; several apply in turn")->allow_extra_args(false);
   parser->add_option("--only", arguments->only, "Steps to leave out, separated by commas (default: each)")
       ->delimiter(',');
-  parser->add_option("--frames", arguments->frames, "Take the first N pairs only");
+  parser->add_option("--frames", arguments->frames, "Take the first N pairs only")->check(count_above_zero());
   parser->add_flag("--overwrite", arguments->overwrite, "Replace the runs of an earlier ablation in OUT");
   parser->add_flag("--json", arguments->json, "JSON instead of a table: SI units, radians");
   parser->footer(

@@ -80,7 +80,7 @@ Result<int> run_export(const ExportArguments& arguments) {
   std::fputs(incomplete_warning(arguments.run).c_str(), stderr);
   if (arguments.format == "ply") return export_clouds(arguments);
   if (arguments.body > 0 && arguments.format != "tum" && arguments.format != "kitti") {
-    return Error{ErrorCode::bad_usage, "--body", "is for tum and kitti, which hold one trajectory",
+    return Error{ErrorCode::bad_usage, "--body", "is for tum, kitti and ply, which can hold one body alone",
                  "leave it out: csv and mcap hold all bodies"};
   }
   const Result<EstimatedRun> run = read_run(arguments.run);
@@ -112,7 +112,7 @@ Verb add_export(CLI::App& app) {
   parser
       ->add_option("--body", arguments->body,
                    "tum, kitti: this body's trajectory in place of the camera's; ply: its points alone")
-      ->check(CLI::PositiveNumber);
+      ->check(count_above_zero());
   parser->add_flag("--overwrite", arguments->overwrite, "Replace a file of that name");
   parser->footer(
       "Exit codes: 0 written, 2 usage, 3 no run or nothing in it to write, or written from an INCOMPLETE run,\n"

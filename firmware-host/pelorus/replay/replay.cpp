@@ -86,10 +86,10 @@ Verb add_replay(CLI::App& app) {
   parser->add_option("--calib", arguments->calibration, "Calibration file instead of the data set's own");
   parser->add_option("--config", arguments->configs, "Settings file (config/pelorus.yaml); several apply in turn")
       ->allow_extra_args(false);
-  parser->add_option("--frames", arguments->frames, "Take the first N pairs only");
+  parser->add_option("--frames", arguments->frames, "Take the first N pairs only")->check(count_above_zero());
   parser->add_flag("--overlay", arguments->overlay, "Write an annotated picture of each frame to OUT/overlay");
   parser->add_option("--overlay-every", arguments->overlay_every, "Only of every N-th frame (implies --overlay)")
-      ->check(above_zero());
+      ->check(count_above_zero());
   CLI::Option* realtime =
       parser->add_flag("--realtime", arguments->realtime, "Feed at the recorded times; when late the newest pair wins");
   parser->add_flag("--stepped", arguments->stepped, "Every pair, as fast as possible (default)")->excludes(realtime);

@@ -101,9 +101,11 @@ Verb add_synth(CLI::App& app) {
   parser->add_option("--out", options->out, "Folder to write; absent or empty, or see --overwrite")
       ->required()
       ->type_name("DIR");
-  parser->add_option("--frames", options->frames, "Number of stereo pairs (default: the scene's)")->check(above_zero());
+  parser->add_option("--frames", options->frames, "Number of stereo pairs (default: the scene's)")
+      ->check(count_above_zero());
   CLI::Option* seed =
-      parser->add_option("--seed", options->seed, "Another world of the same kind (default: the scene's)");
+      parser->add_option("--seed", options->seed, "Another world of the same kind (default: the scene's)")
+          ->check(whole_from_zero());
   parser->add_option("--threads", options->threads, "Threads to render with (default: all); never changes the result")
       ->check(CLI::Range(1, 256));
   parser->add_flag("--overwrite", options->overwrite, "Replace an earlier synthetic dive in DIR");
