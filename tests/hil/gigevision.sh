@@ -51,6 +51,10 @@ done
 ip link set lo up
 ip address add 127.0.1.2/8 dev lo
 ip route add 224.0.0.0/4 dev lo
+if [ -n "$can" ]; then
+  ip link show "$can" >/dev/null 2>&1 || ip link add "$can" type vcan || { echo "gigevision.sh: this kernel has no vcan (gigevision_can.sh)" >&2; exit 77; }
+  ip link set "$can" up
+fi
 
 if [ -n "$keep" ]; then
   mkdir "$keep"

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "drivers/aravis/aravis_discovery.h"
+#include "drivers/aravis/aravis_settings.h"
 #include "tests/support/fake_gv_camera.h"
 #include "tests/support/private_network.h"
 
@@ -216,6 +217,33 @@ TEST_F(AravisCameraTest, AnImpossibleSettingNamesTheCameraAndTheSetting) {
   ASSERT_FALSE(opened.ok());
   EXPECT_NE(opened.error().message().find(kAddress), std::string::npos);
   EXPECT_NE(opened.error().message().find("Mono9"), std::string::npos);
+}
+
+TEST_F(AravisCameraTest, ATriggerIsSetAndTakenBack) {
+  const GObjectPtr<ArvCamera> camera(arv_camera_new(kAddress, nullptr));
+  ASSERT_TRUE(camera);
+  AravisConfig c = config();
+  c.trigger = "Line0";
+  ASSERT_TRUE(apply_aravis_settings(camera.get(), c).ok());
+  EXPECT_STREQ(arv_camera_get_trigger_source(camera.get(), nullptr), "Line0");
+  EXPECT_STREQ(arv_camera_get_string(camera.get(), "TriggerMode", nullptr), "On");
+  c.trigger.clear();
+  ASSERT_TRUE(apply_aravis_settings(camera.get(), c).ok());
+  EXPECT_STREQ(arv_camera_get_string(camera.get(), "TriggerMode", nullptr), "Off");
+  c.trigger = "Line7";
+  const Result<> refused = apply_aravis_settings(camera.get(), c);
+  ASSERT_FALSE(refused.ok());
+  EXPECT_NE(refused.error().message().find("a trigger at Line7"), std::string::npos) << refused.error().message();
+}
+
+TEST_F(AravisCameraTest, WithoutATriggerACameraThatWaitsForOneIsSilent) {
+  AravisConfig c = config();
+  c.trigger = "Software";
+  AravisCamera camera(c, clock_);
+  open(camera);
+  CameraFrame frame;
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(camera.next(frame, 100ms), FrameOutcome::timeout);
+  EXPECT_EQ(camera.statistics().frames, 0U);
 }
 
 TEST_F(AravisCameraTest, IsFoundOnTheNetwork) {
