@@ -5,8 +5,10 @@ set -euo pipefail
 bin=$1 tests=$2
 now_ns() { date +%s%N; }
 
-# begin NAME RATE_HZ: the listeners and the service, with the settings of section camera from standard input.
+# begin NAME RATE_HZ [fd]: the listeners and the service, with the settings of section camera from standard input.
 begin() {
+  local fd=false
+  [ $# -lt 3 ] || fd=true
   out=/out/$1
   work=/tmp/$1
   rm -rf "$out"
@@ -18,7 +20,7 @@ begin() {
     printf 'source:\n  kind: v4l2\n  calibration: %s\n' "$work/rig.yaml"
     printf 'timing:\n  latency_ms: 900\n  deadline_tolerance_ms: 1000\n'
     printf 'capture:\n  frame_timeout_ms: %s\n' $((3000 / $2))
-    printf 'mounting:\n  given: true\nprocess:\n  pin: false\ncan:\n  enabled: true\n  interface: vcan0\n'
+    printf 'mounting:\n  given: true\nprocess:\n  pin: false\ncan:\n  enabled: true\n  interface: vcan0\n  fd: %s\n' $fd
   } >"$work/pelorus.yaml"
   lcm-logger -q -f "$work/log.lcm" &
   logger=$!
@@ -92,7 +94,7 @@ YAML
   finish
 }
 
-# film NAME RIGHT_DEVICE PIXELS: recorded pairs, from the moment at which the service has its cameras open.
+# film NAME RIGHT_DEVICE PIXELS [fd]: recorded pairs, from the moment at which the service has its cameras open.
 film() {
   mkdir -p "/tmp/$1"
   cp /out/rig.yaml "/tmp/$1/"
@@ -101,7 +103,7 @@ film() {
   local cameras=$!
   exec 8>"/tmp/$1/commands"
   until grep -q ready "/tmp/$1/cameras"; do kill -0 $cameras; sleep 0.2; done
-  begin "$1" 2 <<YAML
+  begin "$1" 2 ${4:+"$4"} <<YAML
   left: /dev/video10
   right: "${2#-}"
   pixel_format: $3
@@ -123,4 +125,7 @@ YAML
 
 vivid
 film gray /dev/video11 GREY
-film mjpg - MJPG
+ip link set vcan0 down
+ip link set vcan0 mtu 72
+ip link set vcan0 up
+film mjpg - MJPG fd
