@@ -49,10 +49,7 @@ void BusListener::listen(std::chrono::milliseconds patience) {
   while (outcome > 0) outcome = bus->handleTimeout(0);
   const ArrivalTime now = std::chrono::steady_clock::now();
   while (!odom_arrivals_.empty() && now - odom_arrivals_.front() > kRateWindow) odom_arrivals_.pop_front();
-  view_.odom_rate_hz = 0;
-  if (odom_arrivals_.size() < 2) return;
-  const double span_s = std::chrono::duration<double>(odom_arrivals_.back() - odom_arrivals_.front()).count();
-  if (span_s > 0) view_.odom_rate_hz = static_cast<double>(odom_arrivals_.size() - 1) / span_s;
+  view_.odom_rate_hz = heard_rate_hz(odom_arrivals_, view_.odom.has_value());
 }
 
 void BusListener::take_odom(const lcm::ReceiveBuffer*, const std::string&, const vis_odom_t* message) {

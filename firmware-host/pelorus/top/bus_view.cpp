@@ -19,6 +19,12 @@ Eigen::Matrix3d R_world_body_of(const vis_odom_t& odom) {
 
 }  // namespace
 
+double heard_rate_hz(const std::deque<ArrivalTime>& arrivals, bool heard_before) {
+  if (arrivals.empty()) return heard_before ? 0 : kNaN;
+  const double span_s = std::chrono::duration<double>(arrivals.back() - arrivals.front()).count();
+  return span_s > 0 ? static_cast<double>(arrivals.size() - 1) / span_s : kNaN;
+}
+
 double closing_speed_mps(const vis_track_t& track, const vis_tracks_t& tracks, const vis_odom_t& odom) {
   if (tracks.utime != odom.utime || !odom.pose_valid || !odom.velocity_valid || !track.velocity_valid) return kNaN;
   const Eigen::Vector3d p_body = vector_of(track.centroid_body_m);

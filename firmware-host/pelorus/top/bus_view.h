@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <deque>
+#include <limits>
 #include <optional>
 #include <pelorus/vis_health_t.hpp>
 #include <pelorus/vis_odom_t.hpp>
@@ -28,8 +30,8 @@ struct BusView {
   std::optional<Heard<vis_odom_t>> odom;
   std::optional<Heard<vis_tracks_t>> tracks;
   std::optional<Heard<vis_health_t>> health;
-  std::optional<Heard<vis_health_t>> health_before;  // the one before, to tell what has grown
-  double odom_rate_hz = 0;                           // as heard over the last seconds
+  std::optional<Heard<vis_health_t>> health_before;                // the one before, to tell what has grown
+  double odom_rate_hz = std::numeric_limits<double>::quiet_NaN();  // as heard over the last seconds; NaN: unknown
 
   [[nodiscard]] bool complete() const { return odom && tracks && health; }
 };
@@ -41,6 +43,9 @@ template <class Message>
 [[nodiscard]] bool is_stale(const std::optional<Heard<Message>>& heard, ArrivalTime now, double limit_s) {
   return !heard || heard->age_s(now) > limit_s;
 }
+
+// What `arrivals` of the last seconds say. One message is no rate yet; none after the first is one: silence.
+[[nodiscard]] double heard_rate_hz(const std::deque<ArrivalTime>& arrivals, bool heard_before);
 
 // How fast the range from the vehicle to the body shrinks [m/s]; NaN when either motion is unknown, or when the two
 // messages are of different pairs.

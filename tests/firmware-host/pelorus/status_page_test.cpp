@@ -171,6 +171,18 @@ TEST(StatusPage, WhatWasNeverHeardIsNoZero) {
   EXPECT_FALSE(says(all, "0.0")) << all;
 }
 
+TEST(StatusPage, ARateNeedsTwoMessagesAndSilenceIsOne) {
+  BusView view = small_view();
+  view.odom_rate_hz = heard_rate_hz({ago(0.1)}, true);  // what `--once` has mostly heard
+  EXPECT_TRUE(says(line_of(view, "RATES"), "heard - Hz")) << line_of(view, "RATES");
+  EXPECT_TRUE(YAML::Load(status_json(view, kNow))["odom"]["heard_rate_hz"].IsNull());
+  EXPECT_TRUE(std::isnan(heard_rate_hz({ago(0.1), ago(0.1)}, true))) << "together out of a queue";
+  EXPECT_TRUE(std::isnan(BusView().odom_rate_hz));
+  EXPECT_TRUE(std::isnan(heard_rate_hz({}, false)));
+  EXPECT_NEAR(heard_rate_hz({ago(0.5), ago(0.3), ago(0.1)}, true), 5, 1e-6);
+  EXPECT_EQ(heard_rate_hz({}, true), 0) << "fell silent";
+}
+
 TEST(StatusPage, AnInvalidPoseIsNotShown) {
   BusView view = small_view();
   view.odom->message.pose_valid = false;
