@@ -22,6 +22,8 @@ struct SceneCamera {
   double look_down_rad = 1.2;  // 0 looks ahead along the vehicle's x, pi/2 straight down
   [[nodiscard]] double cx_px() const { return 0.5 * (width_px - 1); }
   [[nodiscard]] double cy_px() const { return 0.5 * (height_px - 1); }
+  // Left camera in the vehicle (x forward, y starboard, z down), at its origin.
+  [[nodiscard]] Rigid3 T_body_cam() const;
 };
 
 struct Seabed {

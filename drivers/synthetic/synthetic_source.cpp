@@ -24,6 +24,8 @@ SyntheticSource::SyntheticSource(Scene scene, int threads) : scene_(std::move(sc
   calibration_.left = intrinsics(scene_.camera);
   calibration_.right = calibration_.left;
   calibration_.T_right_left.translation() = Eigen::Vector3d(-scene_.camera.baseline_m, 0, 0);
+  calibration_.T_body_left = scene_.camera.T_body_cam();
+  calibration_.body_known = true;
   calibration_.rectified = true;
   for (std::size_t k = 0; k < scene_.bodies.size(); ++k)
     if (!scene_.bodies[k].path.stands_still()) moving_.push_back(k);

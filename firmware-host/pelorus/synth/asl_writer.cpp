@@ -25,6 +25,19 @@ std::string pose_csv(const Rigid3& T) {
   return text;
 }
 
+// All digits: both cameras' rotations have to come back equal.
+std::string rows_text(const Rigid3& T) {
+  std::string rows;
+  for (int row = 0; row < 4; ++row) {
+    const Eigen::RowVector4d r = T.matrix().row(row);
+    char text[160];
+    std::snprintf(text, sizeof text, "%s%.17g, %.17g, %.17g, %.17g", row == 0 ? "" : ",\n         ", r(0), r(1), r(2),
+                  r(3));
+    rows += text;
+  }
+  return rows;
+}
+
 bool write_png(const fs::path& path, const Image& image) {
   try {
     // The wrapper does not write to the pixels; cv::Mat has no read-only form.
@@ -94,7 +107,7 @@ Result<> AslWriter::write_headers(const synthetic::SyntheticSource& source) {
   }
   if (!open_csv("mav0/state_groundtruth_estimate0",
                 "#timestamp [ns], p_RS_R_x [m], p_RS_R_y [m], p_RS_R_z [m], q_RS_w [], q_RS_x [], q_RS_y [], q_RS_z []",
-                camera_truth_))
+                vehicle_truth_))
     return io_error(*partial_, "the truth cannot be written");
   object_truth_.resize(static_cast<std::size_t>(source.object_count()));
   for (std::size_t k = 0; k < object_truth_.size(); ++k) {
@@ -123,17 +136,16 @@ Result<> AslWriter::write_goals(const synthetic::Goals& goals) {
 
 Result<> AslWriter::write_camera(int side, const StereoCalibration& calibration, double rate_hz) {
   const CameraIntrinsics& k = calibration.left;
-  const double x_m = side == 0 ? 0 : -calibration.T_right_left.translation().x();
+  const Rigid3 T_body_side =
+      side == 0 ? calibration.T_body_left : calibration.T_body_left * calibration.T_right_left.inverse();
   char text[1200];
   std::snprintf(text, sizeof text,
                 "%%YAML:1.0\n"
                 "# General sensor definitions.\n"
                 "sensor_type: camera\n"
                 "comment: Pelorus synthetic dive, cam%d of a rectified pair without distortion\n\n"
-                "# Sensor extrinsics wrt. the body-frame (body = rectified left camera).\n"
-                "T_BS:\n  cols: 4\n  rows: 4\n"
-                "  data: [1.0, 0.0, 0.0, %.12g,\n         0.0, 1.0, 0.0, 0.0,\n"
-                "         0.0, 0.0, 1.0, 0.0,\n         0.0, 0.0, 0.0, 1.0]\n\n"
+                "# Sensor extrinsics wrt. the body-frame (x forward, y starboard, z down).\n"
+                "T_BS:\n  cols: 4\n  rows: 4\n  data: [%s]\n\n"
                 "# Camera specific definitions.\n"
                 "rate_hz: %.12g\n"
                 "resolution: [%d, %d]\n"
@@ -141,7 +153,7 @@ Result<> AslWriter::write_camera(int side, const StereoCalibration& calibration,
                 "intrinsics: [%.12g, %.12g, %.12g, %.12g] #fu, fv, cu, cv\n"
                 "distortion_model: radial-tangential\n"
                 "distortion_coefficients: [0.0, 0.0, 0.0, 0.0]\n",
-                side, x_m, rate_hz, k.width, k.height, k.fx_px, k.fy_px, k.cx_px, k.cy_px);
+                side, rows_text(T_body_side).c_str(), rate_hz, k.width, k.height, k.fx_px, k.fy_px, k.cx_px, k.cy_px);
   const fs::path path = *partial_ / camera_folder(side) / "sensor.yaml";
   std::ofstream file(path);
   file << text;
@@ -161,18 +173,19 @@ Result<> AslWriter::append(int frame, const SourcePair& pair, const synthetic::S
   }
   if (!right_written) return io_error(image_path(1), "cannot be written");
   for (std::ofstream& list : lists_) list << stamp << ',' << stamp << ".png\n";
-  camera_truth_ << stamp << ',' << pose_csv(source.T_world_cam(frame)) << '\n';
+  const Rigid3 T_world_body = source.T_world_cam(frame) * source.calibration().T_body_left.inverse();
+  vehicle_truth_ << stamp << ',' << pose_csv(T_world_body) << '\n';
   for (std::size_t k = 0; k < object_truth_.size(); ++k) {
     const int object = static_cast<int>(k);
     object_truth_[k] << stamp << ',' << pose_csv(source.T_world_obj(object, frame)) << ',' << source.visible_px(object)
                      << '\n';
   }
-  if (!lists_[0] || !lists_[1] || !camera_truth_) return io_error(*partial_, "the lists cannot be written");
+  if (!lists_[0] || !lists_[1] || !vehicle_truth_) return io_error(*partial_, "the lists cannot be written");
   return Ok{};
 }
 
 Result<> AslWriter::finish() {
-  std::vector<std::ofstream*> files{&lists_[0], &lists_[1], &camera_truth_};
+  std::vector<std::ofstream*> files{&lists_[0], &lists_[1], &vehicle_truth_};
   for (std::ofstream& file : object_truth_) files.push_back(&file);
   for (std::ofstream* file : files) {
     file->close();

@@ -1,7 +1,8 @@
 #pragma once
 // Writes a synthetic dive as an EuRoC ASL folder: mav0/cam0, mav0/cam1 (data.csv, sensor.yaml, data/<ns>.png),
-// mav0/state_groundtruth_estimate0 (T_world_body, body = rectified left camera) and, per moving body k = 1, 2, ...,
-// mav0/object<k>/data.csv (T_world_obj, visible_px) and body.csv (name, box); goals.yaml when the scene has goals.
+// mav0/state_groundtruth_estimate0 (T_world_body: the vehicle, x forward, y starboard, z down, in which T_BS has the
+// cameras as the scene mounts them) and, per moving body k = 1, 2, ..., mav0/object<k>/data.csv (T_world_obj,
+// visible_px) and body.csv (name, box); goals.yaml when the scene has goals. `world` is the left camera of frame 0.
 // Nothing bears the final name before everything is written, and a dive that is not finished leaves nothing behind.
 // Thread-bound.
 
@@ -43,7 +44,7 @@ class AslWriter {
   std::unique_ptr<const std::filesystem::path, RemoveFolder> partial_;
   bool replace_;
   std::ofstream lists_[2];
-  std::ofstream camera_truth_;
+  std::ofstream vehicle_truth_;
   std::vector<std::ofstream> object_truth_;
 };
 

@@ -113,7 +113,7 @@ Verb add_synth(CLI::App& app) {
   parser->add_flag("--force", options->overwrite)->group("");
   parser->footer(
       "Example: pelorus synth paper --out /tmp/dive\n"
-      "Truth: mav0/state_groundtruth_estimate0 (left camera), mav0/object<k> (moving bodies).\n"
+      "Truth: mav0/state_groundtruth_estimate0 (vehicle; T_BS: cameras in it), mav0/object<k> (moving bodies).\n"
       "Exit codes: 0 done, 2 usage, 5 scene file, 6 input/output, 130 interrupted.");
   return {parser, [options, seed] {
             options->seed_given = seed->count() > 0;

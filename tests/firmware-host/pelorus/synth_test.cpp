@@ -81,6 +81,7 @@ TEST_F(Synth, WhatItWritesReadsBackAsTheSamePixelsAndCalibration) {
   EXPECT_DOUBLE_EQ(calibration.left.fx_px, 75);
   EXPECT_DOUBLE_EQ(calibration.left.cx_px, 47.5);
   EXPECT_NEAR(calibration.T_right_left.translation().x(), -0.15, 1e-12);
+  EXPECT_LT(rotation_angle_rad(calibration.T_right_left.linear()), 1e-15) << "nothing to rectify";
   EXPECT_EQ(recorded.value()->pair_count(), 3U);
 
   synthetic::SyntheticSource rendered(synthetic::load_scene(scene_.string()).value());
@@ -98,17 +99,21 @@ TEST_F(Synth, WhatItWritesReadsBackAsTheSamePixelsAndCalibration) {
   }
 }
 
-TEST_F(Synth, TruthIsWrittenForTheCameraAndForMovingBodiesOnly) {
+TEST_F(Synth, TruthIsWrittenForTheVehicleAndForMovingBodiesOnly) {
   ASSERT_TRUE(run_synth({scene_.string(), "--out", out_.string()}).ok());
   synthetic::SyntheticSource rendered(synthetic::load_scene(scene_.string()).value());
-  const auto camera = rows(out_ / "mav0/state_groundtruth_estimate0/data.csv");
+  const auto recorded = open_dataset(out_);
+  ASSERT_TRUE(recorded.ok()) << recorded.error().message();
+  const Rigid3 T_body_cam = recorded.value()->calibration().T_body_left;
+  EXPECT_LT((T_body_cam.matrix() - rendered.scene().camera.T_body_cam().matrix()).norm(), 1e-12);
+  const auto vehicle = rows(out_ / "mav0/state_groundtruth_estimate0/data.csv");
   const auto object = rows(out_ / "mav0/object1/data.csv");
   EXPECT_FALSE(fs::exists(out_ / "mav0/object2"));
-  ASSERT_EQ(camera.size(), 3U);
+  ASSERT_EQ(vehicle.size(), 3U);
   ASSERT_EQ(object.size(), 3U);
   for (int frame = 0; frame < 3; ++frame) {
     const auto k = static_cast<std::size_t>(frame);
-    EXPECT_LT((pose_of(camera[k]).matrix() - rendered.T_world_cam(frame).matrix()).norm(), 1e-9);
+    EXPECT_LT(((pose_of(vehicle[k]) * T_body_cam).matrix() - rendered.T_world_cam(frame).matrix()).norm(), 1e-9);
     EXPECT_LT((pose_of(object[k]).matrix() - rendered.T_world_obj(0, frame).matrix()).norm(), 1e-9);
     SourcePair pair;
     rendered.render(frame, pair);
@@ -116,6 +121,15 @@ TEST_F(Synth, TruthIsWrittenForTheCameraAndForMovingBodiesOnly) {
     EXPECT_EQ(object[k][8], rendered.visible_px(0));
     EXPECT_GT(object[k][8], 0);
   }
+}
+
+TEST_F(Synth, AVehicleThatGoesAheadMovesAlongXOfItsBody) {
+  ASSERT_TRUE(run_synth({scene_.string(), "--out", out_.string()}).ok());
+  const auto vehicle = rows(out_ / "mav0/state_groundtruth_estimate0/data.csv");
+  ASSERT_EQ(vehicle.size(), 3U);
+  const Eigen::Vector3d step = (pose_of(vehicle[0]).inverse() * pose_of(vehicle[1])).translation();
+  EXPECT_NEAR(step.x(), 0.2, 0.01);  // 1 m/s at 5 pairs/s
+  EXPECT_LT(step.tail<2>().norm(), 0.01);
 }
 
 TEST_F(Synth, FramesAndSeedOverrideTheScene) {

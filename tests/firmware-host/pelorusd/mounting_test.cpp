@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "drivers/synthetic/synthetic_source.h"
+
 namespace pelorus {
 namespace {
 
@@ -41,6 +43,21 @@ TEST(Mounting, YawedByNinetyDegreesLooksToStarboard) {
 
 TEST(Mounting, ACalibrationThatKnowsTheBodyIsBelieved) {
   EXPECT_TRUE(mounting_of({}, rectifier(), true).T_body_cam.translation().isApprox(Eigen::Vector3d(1, 2, 3)));
+}
+
+TEST(Mounting, ARenderedCameraLooksDownAsItsSceneSaysUnlessConfigured) {
+  synthetic::Scene scene;
+  scene.vehicle.p_sea = {Eigen::Vector3d::Zero()};
+  scene.vehicle.rpy_rad = {Eigen::Vector3d::Zero()};
+  scene.camera.look_down_rad = 1.2;
+  const synthetic::SyntheticSource source(scene, 1);
+  const Rectifier rectified = Rectifier::create(source.calibration(), "test").value();
+  const Mounting m = mounting_of({}, rectified, source.calibration().body_known);
+  const Eigen::Vector3d ahead_and_down(std::cos(1.2), 0, std::sin(1.2));
+  EXPECT_TRUE((m.T_body_cam.linear() * kOptical).isApprox(ahead_and_down)) << m.origin;
+  EXPECT_TRUE((m.T_body_cam.linear() * kImageRight).isApprox(kStarboard));
+  const Mounting given = mounting_of({.given = true}, rectified, source.calibration().body_known);
+  EXPECT_TRUE((given.T_body_cam.linear() * kOptical).isApprox(kForward));
 }
 
 }  // namespace
