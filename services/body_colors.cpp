@@ -6,8 +6,9 @@
 namespace pelorus {
 namespace {
 
-constexpr std::array<Rgb, 8> kObjectColors = {Rgb{226, 106, 0}, Rgb{170, 80, 255}, Rgb{10, 150, 205}, Rgb{230, 50, 50},
-                                              Rgb{165, 130, 0}, Rgb{80, 110, 255}, Rgb{240, 50, 150}, Rgb{25, 155, 70}};
+constexpr std::array<Rgb, 8> kObjectColors = {Rgb{225, 120, 0},   Rgb{120, 45, 255}, Rgb{0, 120, 180},
+                                              Rgb{225, 0, 120},   Rgb{60, 150, 255}, Rgb{165, 75, 0},
+                                              Rgb{165, 135, 180}, Rgb{105, 105, 90}};
 
 }  // namespace
 
