@@ -5,6 +5,7 @@
 
 #include "core/base/nearest_rank.h"
 #include "firmware-host/pelorus/json_object.h"
+#include "firmware-host/pelorus/report/body_names.h"
 #include "firmware-host/pelorus/report/json_numbers.h"
 #include "firmware-host/pelorus/report/latency.h"
 #include "firmware-host/pelorus/report/page_scene.h"
@@ -90,6 +91,7 @@ std::string errors_json(const ReportInput& input, const PageBudget& budget) {
   for (const BodyErrors& errors : input.errors.bodies) {
     bodies.push_back(JsonObject()
                          .text("name", body_name(input, errors))
+                         .text("true_name", true_name(input, errors))
                          .text("color", css_color(object_color(errors.samples.front().object)))
                          .raw("curves", curves_json(run, errors.samples, std::max<std::size_t>(limit, 50)))
                          .str());

@@ -7,6 +7,7 @@
 #include "core/evaluation/motion_error.h"
 #include "core/evaluation/trajectory_error.h"
 #include "firmware-host/pelorus/json_object.h"
+#include "firmware-host/pelorus/report/body_names.h"
 #include "firmware-host/pelorus/report/json_numbers.h"
 #include "firmware-host/pelorus/report/scene_view.h"
 
@@ -56,6 +57,7 @@ std::string object_json(const ReportInput& input, const ShownFrames& shown, Body
   for (const ScenePoint& point : kept) coordinates.add(point.p_body);
   return JsonObject()
       .integer("id", id.value)
+      .text("name", object_name(input, id))
       .text("color", css_color(object_color(id)))
       .raw("frame", frames.str())
       .raw("pose", poses.str())
@@ -160,14 +162,6 @@ std::string true_bodies_json(const ReportInput& input, const ShownFrames& shown)
                          .str());
   }
   return json_array(bodies);
-}
-
-std::string body_name(const ReportInput& input, const BodyErrors& errors) {
-  std::set<BodyId> ids;
-  for (const ErrorSample& sample : errors.samples) ids.insert(sample.object);
-  std::string name = input.judged.truth->bodies[static_cast<std::size_t>(errors.body)] + " (";
-  for (const BodyId id : ids) name += (id == *ids.begin() ? "#" : " #") + std::to_string(id.value);
-  return name + ")";
 }
 
 std::string static_points_json(const ReportInput& input, const PageBudget& budget) {

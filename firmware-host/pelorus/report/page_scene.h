@@ -18,8 +18,6 @@ struct ShownFrames {
 [[nodiscard]] std::string frames_json(const ReportInput& input, const ShownFrames& shown);
 // Objects that were ever confirmed.
 [[nodiscard]] std::string objects_json(const ReportInput& input, const ShownFrames& shown, const PageBudget& budget);
-// A body of the truth with the objects that were it: "crate (#3)".
-[[nodiscard]] std::string body_name(const ReportInput& input, const BodyErrors& errors);
 // The true path of each moving body that an object was matched with: of the point that the object's origin is.
 [[nodiscard]] std::string true_bodies_json(const ReportInput& input, const ShownFrames& shown);
 [[nodiscard]] std::string static_points_json(const ReportInput& input, const PageBudget& budget);

@@ -4,10 +4,12 @@
 #include <numeric>
 
 #include "core/evaluation/evaluation.h"
+#include "firmware-host/pelorus/report/body_names.h"
 #include "firmware-host/pelorus/report/error_series.h"
 #include "firmware-host/pelorus/report/json_numbers.h"
 #include "firmware-host/pelorus/report/latency.h"
 #include "firmware-host/pelorus/report/page.h"
+#include "firmware-host/pelorus/report/page_charts.h"
 #include "firmware-host/pelorus/report/page_scene.h"
 #include "firmware-host/pelorus/report/scene_view.h"
 #include "tests/support/temporary_folder.h"
@@ -253,7 +255,17 @@ TEST(Replayed, FramesWithoutAPoseAreNullAndObjectsKnowTheirFrames) {
   EXPECT_NE(frames_json(input, shown).find("null,null,null,null,null,null,null"), std::string::npos);
   // Tentative in frames 0 and 1: not shown.
   EXPECT_NE(objects_json(input, shown, {}).find("\"frame\":[2,3,4,5,6,7,8]"), std::string::npos);
-  EXPECT_EQ(body_name(input, input.errors.bodies.at(0)), "crate (#7)");
+}
+
+TEST(BodyNames, OneNameForABodyWhereverThePageTellsOfIt) {
+  const Dive dive;
+  const ReportInput input = dive.input();
+  EXPECT_EQ(body_name(input, input.errors.bodies.at(0)), "#7 crate");
+  EXPECT_EQ(object_name(input, BodyId{7}), "#7 crate");
+  EXPECT_EQ(object_name(input, BodyId{8}), "#8") << "no body of the truth";
+  const std::string name = "\"name\":\"#7 crate\"";
+  EXPECT_NE(objects_json(input, shown_frames(dive.run, {}), {}).find(name), std::string::npos);
+  EXPECT_NE(errors_json(input, {}).find(name), std::string::npos);
 }
 
 }  // namespace

@@ -2,15 +2,21 @@
 
 import * as Plot from '@observablehq/plot';
 import {lengthUnit} from './facts.mjs';
-import {DEG_PER_RAD, element, figure, INK, legend} from './format.mjs';
+import {DEG_PER_RAD, element, figure, INK, isKnown, legend, nothing} from './format.mjs';
+import {addEndLabels, CHARACTER_WIDTH} from './labels.mjs';
 
 const HALF = 590;
 const FULL = 1190;
 const STYLE = {fontSize: '13px'};
-const DASHES = ['', '7 3', '2 3', '9 3 2 3'];
+const CURVE_HEIGHT = 250;
 
-// A run of one frame has an axis of time too.
-const endOf = (run) => Math.max(run.states.at(-1).to_s, 0.001);
+const endOf = (run) => run.states.at(-1)?.to_s ?? 0;
+
+// Instead of axes without anything between them.
+function nothingOverTime(run) {
+  const one = run.evaluation.frames === 1;
+  return nothing(one ? 'One frame: nothing to draw over time.' : 'Fewer than two figures: nothing to draw over time.');
+}
 
 // A vertical line that moves with the playback; a click on the chart moves the playback.
 function addPlayhead(plot, playback) {
@@ -43,16 +49,25 @@ function chart(id, plot, caption, playback) {
   holder.append(caption ? element('figure', {}, element('figcaption', {textContent: caption}), plot) : plot);
 }
 
-// series: {name, color, dash, time_s, values}
+// The last figure of a curve is where its name stands.
+function endOfCurve({name, color, time_s, values}) {
+  const last = values.findLastIndex(isKnown);
+  return last < 0 ? null : {name, color, x: time_s[last], y: values[last]};
+}
+
+// series: {name, color, time_s, values}
 function curves(series, yLabel, end) {
-  const marks = series.map(({color, dash, width, time_s, values}) =>
-    Plot.line(time_s, {x: (t) => t, y: (_, i) => values[i] ?? NaN, stroke: color, strokeWidth: width ?? 1.6, strokeDasharray: dash}));
-  return Plot.plot({
-    width: HALF, height: 250, marginLeft: 62, marginBottom: 38, grid: true, style: STYLE,
+  const marks = series.map(({color, width, time_s, values}) =>
+    Plot.line(time_s, {x: (t) => t, y: (_, i) => values[i] ?? NaN, stroke: color, strokeWidth: width ?? 1.6}));
+  const marginRight = 12 + CHARACTER_WIDTH * Math.max(...series.map(({name}) => name.length));
+  const plot = Plot.plot({
+    width: HALF, height: CURVE_HEIGHT, marginLeft: 62, marginBottom: 38, marginRight, grid: true, style: STYLE,
     x: {label: 'time [s]', labelAnchor: 'center', domain: [0, end]},
     y: {label: yLabel, labelAnchor: 'center', zero: true},
     marks: [Plot.ruleY([0]), ...marks],
   });
+  addEndLabels(plot, series.map(endOfCurve).filter((label) => label), {left: 62, right: HALF, top: 10, bottom: CURVE_HEIGHT - 28});
+  return plot;
 }
 
 export function showErrors(run, playback) {
@@ -60,10 +75,12 @@ export function showErrors(run, playback) {
     document.getElementById('errors').hidden = true;
     return;
   }
-  const all = [{name: 'vehicle', color: INK, dash: '', width: 2.2, curves: run.errors.camera},
-    ...run.errors.bodies.map((body, i) => ({...body, dash: DASHES[i % DASHES.length]}))];
-  legend(document.querySelector('#errors [data-legend]'),
-    all.map(({name, color, dash}) => ({name, color, dashed: dash !== ''})));
+  const all = [{name: 'vehicle', color: INK, width: 2.2, curves: run.errors.camera}, ...run.errors.bodies];
+  if (all.every((one) => one.curves.time_s.length < 2)) {
+    document.getElementById('error-charts').append(nothingOverTime(run));
+    return;
+  }
+  legend(document.querySelector('#errors [data-legend]'), all);
   const end = endOf(run);
   for (const [key, caption] of [
     ['step_m', 'Local displacement error (one step)'], ['step_rad', 'Local orientation error (one step)'],
@@ -88,6 +105,10 @@ export function showStates(run, playback) {
   legend(entries, [...totals].map(([state, {frames, color}]) =>
     ({name: `${state}: ${frames} ${frames === 1 ? 'frame' : 'frames'}`, color, block: true})));
   document.getElementById('state-bar').append(entries);
+  if (!(end > 0)) {
+    document.getElementById('state-bar').append(nothingOverTime(run));
+    return;
+  }
   chart('state-bar', Plot.plot({
     width: FULL, height: 84, marginLeft: 56, marginBottom: 38, style: STYLE,
     x: {label: 'time [s]', labelAnchor: 'center', domain: [0, end]},
@@ -100,11 +121,15 @@ export function showStates(run, playback) {
 export function showPointCounts(run, playback) {
   const counts = run.point_counts;
   if (!counts) return;
-  const kinds = [['tracked', INK, ''], ['static', '#2e7d4f', ''], ['moving', '#b3261e', '7 3'], ['outlier', '#6b7280', '2 3']];
+  if (counts.time_s.length < 2) {
+    document.getElementById('point-chart').append(nothingOverTime(run));
+    return;
+  }
+  const kinds = [['tracked', INK], ['static', '#00805c'], ['moving', '#c84a00'], ['outlier', '#7d8794']];
   const entries = element('div', {className: 'legend'});
-  legend(entries, kinds.map(([name, color, dash]) => ({name, color, dashed: dash !== ''})));
+  legend(entries, kinds.map(([name, color]) => ({name, color})));
   document.getElementById('point-chart').append(entries);
-  chart('point-chart', curves(kinds.map(([name, color, dash]) => ({name, color, dash, time_s: counts.time_s, values: counts[name]})),
+  chart('point-chart', curves(kinds.map(([name, color]) => ({name, color, time_s: counts.time_s, values: counts[name]})),
     'points', endOf(run)), '', playback);
 }
 
@@ -112,6 +137,10 @@ export function showLatency(run) {
   const {latency} = run;
   if (!latency) {
     document.getElementById('latency').hidden = true;
+    return;
+  }
+  if (latency.frames < 2) {
+    document.getElementById('latency-note').textContent = `One frame, ${figure(latency.mean_ms, 3)} ms from the decoded pair to its result.`;
     return;
   }
   // Marks that fall together share one label.
@@ -128,8 +157,8 @@ export function showLatency(run) {
       ticks: 12, tickFormat: (ms) => figure(ms, 3)},
     y: {label: 'frames', labelAnchor: 'center', grid: true},
     marks: [Plot.rectY(latency.bins, {x1: (b) => b[0], x2: (b) => b[1], y: (b) => b[2], fill: '#5b7fa6', insetLeft: 1}),
-      Plot.ruleY([0]), Plot.ruleX(marks, {x: 'ms', stroke: '#b3261e', strokeDasharray: '4 3'}),
-      ...marks.map((mark, i) => Plot.text([mark], {x: 'ms', frameAnchor: 'top', dy: -10 - 16 * (marks.length - 1 - i), textAnchor: 'end', dx: -4,
+      Plot.ruleY([0]), Plot.ruleX(marks, {x: 'ms', stroke: '#b3261e'}),
+      ...marks.map((mark, i) => Plot.text([mark], {x: 'ms', frameAnchor: 'top', dy: -16 - 16 * (marks.length - 1 - i), textAnchor: 'end', dx: -4,
         text: (m) => `${m.name} ${figure(m.ms, 3)} ms`, fill: '#8f1d17', stroke: '#fff', strokeWidth: 4}))],
   }));
   document.getElementById('latency-note').textContent =

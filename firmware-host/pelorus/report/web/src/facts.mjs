@@ -1,6 +1,7 @@
 // Header, key figures and the tables with the exact figures of the evaluation.
 
-import {CM_PER_M, DEG_PER_RAD, element, figure, percent, table} from './format.mjs';
+import {CM_PER_M, DEG_PER_RAD, element, figure, isKnown, percent, table} from './format.mjs';
+import {bodyName, objectName} from './names.mjs';
 
 const byId = (id) => document.getElementById(id);
 
@@ -16,8 +17,8 @@ export function lengthUnit(values) {
   return largest > 1 ? {name: 'm', factor: 1} : {name: 'cm', factor: CM_PER_M};
 }
 
-const inCm = (value) => (value === null ? '-' : `${figure(value * CM_PER_M)} cm`);
-const inDeg = (value) => (value === null ? '-' : `${figure(value * DEG_PER_RAD)} deg`);
+const inCm = (value) => (!isKnown(value) ? '-' : `${figure(value * CM_PER_M)} cm`);
+const inDeg = (value) => (!isKnown(value) ? '-' : `${figure(value * DEG_PER_RAD)} deg`);
 
 function showSummary(run) {
   const {evaluation} = run;
@@ -25,9 +26,9 @@ function showSummary(run) {
   fact('Frames', String(evaluation.frames), `${figure(seconds)} s, ${evaluation.frames_with_pose} with a pose`);
   const {frames_unreadable: unreadable, frames_dropped: dropped} = evaluation;
   fact('Missing pairs, resets', `${evaluation.frames_missing}, ${evaluation.resets}`,
-    unreadable === null ? '' : `${unreadable} unreadable, ${dropped} dropped`);
+    isKnown(unreadable) ? `${unreadable} unreadable, ${dropped} dropped` : '');
   const confirmed = evaluation.confirmed_object_ids;
-  fact('Objects confirmed', String(confirmed.length), confirmed.map((id) => `#${id}`).join(' '));
+  fact('Objects confirmed', String(confirmed.length), confirmed.map((id) => objectName(run, id)).join(', '));
   if (run.latency) {
     fact('Latency, median', `${figure(run.latency.p50_ms, 3)} ms`,
       `p99 ${figure(run.latency.p99_ms, 3)} ms, p99.9 ${figure(run.latency.p999_ms, 3)} ms`);
@@ -35,16 +36,21 @@ function showSummary(run) {
   const {camera, objects} = evaluation;
   if (camera) {
     fact('Path of the vehicle', `${figure(camera.path_length_m)} m`);
-    fact('Local error, mean', inCm(camera.step_m.mean), inDeg(camera.step_rad.mean));
-    fact('Absolute error, mean', inCm(camera.absolute_m.mean), inDeg(camera.absolute_rad.mean));
-    fact('Final drift', inCm(camera.final_drift_m), `${figure(camera.final_drift_percent)} % of the path`);
+    fact('Local error, mean', inCm(camera.step_m?.mean), inDeg(camera.step_rad?.mean));
+    fact('Absolute error, mean', inCm(camera.absolute_m?.mean), inDeg(camera.absolute_rad?.mean));
+    // Of a path too short, no share is known.
+    fact('Final drift', inCm(camera.final_drift_m),
+      isKnown(camera.final_drift_percent) ? `${figure(camera.final_drift_percent)} % of the path` : '');
   }
   if (objects) {
     fact('Right number of motions', percent(objects.right_count_share),
-      `1 s after each appearing ${percent(objects.right_count_settled_share)}`);
+      isKnown(objects.right_count_settled_share) ? `1 s after each appearing ${percent(objects.right_count_settled_share)}` : '');
     fact('False objects', String(objects.false_objects.length));
   }
 }
+
+// On paper a table stays with its title.
+const titled = (title, ...content) => element('div', {className: 'titled'}, element('h3', {textContent: title}), ...content);
 
 function statisticsRow(name, statistics, factor, unit) {
   if (!statistics) return [name, '-', '-', '-', '-', '-', unit];
@@ -65,14 +71,13 @@ function neesText(nees) {
   return nees ? `${figure(nees.mean)} (band ${figure(nees.band_low, 3)} to ${figure(nees.band_high, 3)})` : '-';
 }
 
-function bodyRow(body) {
+function bodyRow(run, body) {
   return [
-    body.name,
-    body.object_ids.map((id) => `#${id}`).join(' ') || '-',
+    bodyName(run, body.name),
     `${body.frames_covered} of ${body.frames_on_show}`,
     percent(body.coverage),
     String(body.identity_switches),
-    body.time_to_detection_s === null ? 'never' : `${figure(body.time_to_detection_s, 3)} s`,
+    !isKnown(body.time_to_detection_s) ? 'never' : `${figure(body.time_to_detection_s, 3)} s`,
     neesText(body.nees),
   ];
 }
@@ -81,9 +86,10 @@ function showErrorTables(run) {
   const container = byId('error-tables');
   const {camera, objects} = run.evaluation;
   const rows = camera ? errorRows('vehicle', camera) : [];
-  for (const body of objects?.bodies ?? []) rows.push(...errorRows(body.name, body));
-  container.append(element('h3', {textContent: 'Errors'}),
-    table(['', 'mean', 'median', 'RMSE', 'max', 'frames', 'unit'], rows));
+  for (const body of objects?.bodies ?? []) rows.push(...errorRows(bodyName(run, body.name), body));
+  if (rows.length) {
+    container.append(titled('Errors', table(['', 'mean', 'median', 'RMSE', 'max', 'frames', 'unit'], rows)));
+  }
   if (camera) {
     const {kitti_drift: kitti} = camera;
     const drift = [
@@ -92,18 +98,18 @@ function showErrorTables(run) {
       ['NEES of the step (expected 6)', neesText(camera.nees)],
     ];
     if (kitti) drift.push(['KITTI drift', `${figure(kitti.translation_percent)} %, ${figure(kitti.rotation_deg_per_100m)} deg/100 m`]);
-    container.append(element('h3', {textContent: 'Vehicle'}), table(['', 'value'], drift));
+    container.append(titled('Vehicle', table(['', 'value'], drift)));
   }
   if (objects?.bodies.length) {
-    container.append(element('h3', {textContent: 'Moving bodies'}),
-      table(['', 'object', 'frames covered', 'coverage', 'identity switches', 'detected after', 'NEES of the motion'],
-        objects.bodies.map(bodyRow)));
+    container.append(titled('Moving bodies',
+      table(['', 'frames covered', 'coverage', 'identity switches', 'detected after', 'NEES of the motion'],
+        objects.bodies.map((body) => bodyRow(run, body)))));
   }
   if (objects?.false_objects.length) {
-    const place = (object) => (object.resting_body ? `on ${object.resting_body}, at rest`
+    const place = (object) => (object.resting_body ? `on ${bodyName(run, object.resting_body)}, at rest`
       : object.duplicate ? 'second object on a body that has one' : 'on the background');
-    container.append(element('h3', {textContent: 'False objects'}), table(['object', 'frames confirmed', 'where'],
-      objects.false_objects.map((object) => [`#${object.object_id}`, String(object.frames), place(object)])));
+    container.append(titled('False objects', table(['', 'frames confirmed', 'where'],
+      objects.false_objects.map((object) => [objectName(run, object.object_id), String(object.frames), place(object)]))));
   }
 }
 

@@ -4,15 +4,17 @@ export const INK = '#15202b';
 export const CM_PER_M = 100;
 export const DEG_PER_RAD = 180 / Math.PI;
 
+export const isKnown = (value) => value !== null && value !== undefined;
+
 export function figure(value, digits = 4) {
-  if (value === null || value === undefined || Number.isNaN(value)) return '-';
+  if (!isKnown(value) || Number.isNaN(value)) return '-';
   if (value === 0) return '0';
   const size = Math.abs(value);
   if (size >= 1e6 || size < 1e-6) return value.toExponential(digits - 1);
   return Number(value.toPrecision(digits)).toLocaleString('en-US', {maximumFractionDigits: 10, useGrouping: false});
 }
 
-export const percent = (share) => (share === null ? '-' : `${figure(100 * share, 4)} %`);
+export const percent = (share) => (isKnown(share) ? `${figure(100 * share, 4)} %` : '-');
 
 export function element(tag, properties = {}, ...children) {
   const node = Object.assign(document.createElement(tag), properties);
@@ -31,7 +33,10 @@ export function table(head, rows) {
   );
 }
 
-// entries: {name, color, dashed, block}
+// Where a chart would have nothing in it.
+export const nothing = (text) => element('p', {className: 'hint nothing', textContent: text});
+
+// entries: {name, color, dashed, block}; dashes mean truth
 export function legend(container, entries) {
   for (const {name, color, dashed, block} of entries) {
     const mark = element('i', {className: block ? 'block' : ''});

@@ -30,7 +30,7 @@ export function viewPaths(run) {
     vehicle: view(triples(run.frames.camera, 7)),
     vehicleTruth: run.frames.truth ? view(triples(run.frames.truth)) : null,
     objects: run.objects.map((object) => ({
-      name: `object ${object.id}`,
+      name: object.name,
       color: object.color,
       path: spread(object.frame, view(triples(object.pose, 7)), count),
     })),

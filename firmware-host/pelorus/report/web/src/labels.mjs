@@ -1,9 +1,10 @@
-// Places for names beside the ends of paths, none over another. Pixels.
+// Names beside the ends of paths and curves, none over another.
 
 export const LABEL_HEIGHT = 17;
+export const CHARACTER_WIDTH = 8.2; // bold, 13 px, at most
 const GAP = 9; // from the end of the path
 
-// labels: {x, y, width}: the end of a path and how long its name is. Returns the left edge and the middle of each.
+// In pixels. labels: {x, y, width}: the end of a path and how long its name is. Returns the left edge and the middle of each.
 export function placeLabels(labels, {left, right, top, bottom}) {
   const placed = labels.map(({x, y, width}, i) => {
     const beside = x + GAP + width <= right ? x + GAP : x - GAP - width;
@@ -24,4 +25,23 @@ export function placeLabels(labels, {left, right, top, bottom}) {
     }
   });
   return placed.sort((a, b) => a.i - b.i).map(({x, y}) => ({x, y}));
+}
+
+// Writes names into a chart: ends {name, color, x, y} in its units, box in pixels. What finds no room the legend tells.
+export function addEndLabels(plot, ends, box) {
+  const svg = plot.tagName === 'svg' ? plot : plot.querySelector('svg');
+  const shown = ends.slice(0, Math.floor((box.bottom - box.top) / LABEL_HEIGHT));
+  const [x, y] = [plot.scale('x'), plot.scale('y')];
+  const places = placeLabels(shown.map((end) =>
+    ({x: x.apply(end.x), y: y.apply(end.y), width: end.name.length * CHARACTER_WIDTH})), box);
+  shown.forEach(({name, color}, i) => {
+    const text = document.createElementNS('http://www.w3.org/2000/svg', 'text');
+    text.setAttribute('class', 'end-label');
+    text.setAttribute('x', places[i].x);
+    text.setAttribute('y', places[i].y);
+    text.setAttribute('text-anchor', 'start');
+    text.setAttribute('fill', color);
+    text.textContent = name;
+    svg.append(text);
+  });
 }

@@ -1,15 +1,14 @@
 // The paths of vehicle and objects from above and from the side, to the same scale, with a mark for the frame shown.
 
 import * as Plot from '@observablehq/plot';
-import {INK, legend} from './format.mjs';
+import {INK, legend, nothing} from './format.mjs';
 import {viewPaths} from './geometry.mjs';
-import {placeLabels} from './labels.mjs';
+import {addEndLabels} from './labels.mjs';
 
 const WIDTH = 1190;
 const TALLEST = 430;
 const MARGIN = {marginLeft: 56, marginRight: 12, marginTop: 18, marginBottom: 38};
 const MOST_SEABED_POINTS = 4000;
-const CHARACTER_WIDTH = 8.2; // bold, 13 px, at most
 
 // The range that holds the ways, and the seabed but for its few farthest points.
 function range(ways, seabed, axis) {
@@ -45,15 +44,9 @@ function layout(paths) {
   return {x: [along[0] - extra, along[1] + extra], views: across.map((one) => ({y: padded(one), height: height(one)}))};
 }
 
-// The names of the objects at the ends of their paths, in the units of the view.
-function endLabels(objects, axis, x, {y: yRange, height}) {
-  const ends = objects.map(({name, color, path}) => ({name, color, p: path.findLast((p) => p !== null)})).filter(({p}) => p);
-  const box = {left: MARGIN.marginLeft, right: WIDTH - MARGIN.marginRight, top: MARGIN.marginTop, bottom: height - MARGIN.marginBottom};
-  const scale = {x: (box.right - box.left) / (x[1] - x[0]), y: (box.bottom - box.top) / (yRange[1] - yRange[0])};
-  const places = placeLabels(ends.map(({name, p}) => ({x: box.left + (p[0] - x[0]) * scale.x,
-    y: box.bottom - (p[axis] - yRange[0]) * scale.y, width: name.length * CHARACTER_WIDTH})), box);
-  return ends.map(({name, color}, i) => ({name, color,
-    x: x[0] + (places[i].x - box.left) / scale.x, y: yRange[0] + (box.bottom - places[i].y) / scale.y}));
+function endsOf(objects, axis) {
+  return objects.map(({name, color, path}) => ({name, color, p: path.findLast((p) => p !== null)}))
+    .filter(({p}) => p).map(({name, color, p}) => ({name, color, x: p[0], y: p[axis]}));
 }
 
 function drawView(paths, axis, label, x, {y: yRange, height}) {
@@ -61,7 +54,7 @@ function drawView(paths, axis, label, x, {y: yRange, height}) {
   const channels = {x: (p) => (p ? p[0] : NaN), y: (p) => (p ? p[axis] : NaN)};
   const line = (path, stroke, options) => Plot.line(path, {...channels, stroke, clip: true, ...options});
   const truth = {strokeDasharray: '4 6', strokeWidth: 1};
-  return Plot.plot({
+  const plot = Plot.plot({
     width: WIDTH, height, ...MARGIN, grid: true, style: {fontSize: '13px'},
     x: {domain: x, label: 'along track [m]', labelAnchor: 'center'},
     y: {domain: yRange, label, labelAnchor: 'center'},
@@ -72,10 +65,11 @@ function drawView(paths, axis, label, x, {y: yRange, height}) {
       // Truth lies over the estimates, thin and dashed: under them it would not be seen.
       paths.vehicleTruth ? line(paths.vehicleTruth, '#b8c4cf', truth) : null,
       ...paths.bodies.map(({path}) => line(path, INK, truth)),
-      Plot.text(endLabels(paths.objects, axis, x, {y: yRange, height}), {x: 'x', y: 'y', text: 'name', textAnchor: 'start',
-        fill: 'color', stroke: '#fff', strokeWidth: 4, fontWeight: 600, ariaLabel: 'name'}),
     ],
   });
+  addEndLabels(plot, endsOf(paths.objects, axis), {left: MARGIN.marginLeft, right: WIDTH - MARGIN.marginRight,
+    top: MARGIN.marginTop, bottom: height - MARGIN.marginBottom});
+  return plot;
 }
 
 // A circle per path that moves with the playback.
@@ -105,15 +99,17 @@ function addPlayheads(plot, paths, axis, playback) {
   move();
 }
 
-export function bodyLegend(run) {
-  const entries = [{name: 'vehicle', color: INK}];
-  for (const object of run.objects) entries.push({name: `object ${object.id}`, color: object.color});
-  return entries;
-}
+const noPathText = (run) => (run.evaluation.frames === 1 ? 'One frame: no path to draw.' : 'No two frames with a pose: no path to draw.');
 
 export function showPaths(run, playback) {
   const paths = viewPaths(run);
-  const entries = bodyLegend(run);
+  const ways = [paths.vehicle, ...paths.objects.map((object) => object.path)];
+  if (paths.seabed.length === 0 && ways.every((way) => way.filter((p) => p !== null).length < 2)) {
+    for (const figure of document.querySelectorAll('#paths figure')) figure.hidden = true;
+    document.getElementById('axes-note').before(nothing(noPathText(run)));
+    return;
+  }
+  const entries = [{name: 'vehicle', color: INK}, ...paths.objects];
   if (run.frames.truth) entries.push({name: 'truth', color: '#51606f', dashed: true});
   if (paths.seabed.length) entries.push({name: 'points of the static scene', color: '#9aa9a0', block: true});
   legend(document.querySelector('#paths [data-legend]'), entries);

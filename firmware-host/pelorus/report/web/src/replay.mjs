@@ -25,7 +25,10 @@ class Viewer {
     canvas.setAttribute('aria-label', 'Scene in 3D: vehicle, objects and points of the frame shown');
     stage.append(canvas);
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener('change', () => this.request());
+    this.controls.addEventListener('change', () => {
+      this.noteEye();
+      this.request();
+    });
     this.follows = false;
     this.aim('scene');
     this.last = this.content.vehiclePosition();
@@ -90,7 +93,13 @@ class Viewer {
     const text = (p) => p.toArray().map((x) => x.toFixed(5)).join(' ');
     document.body.dataset.vehicle = text(vehicle);
     document.body.dataset.target = text(this.controls.target);
+    document.body.dataset.outlines = JSON.stringify(this.content.shownOutlines());
+    this.noteEye();
     this.request();
+  }
+
+  noteEye() {
+    document.body.dataset.eye = this.camera.position.toArray().map((x) => x.toFixed(5)).join(' ');
   }
 
   lookThroughVehicle() {
@@ -106,9 +115,31 @@ class Viewer {
     this.requested = true;
     requestAnimationFrame(() => {
       this.requested = false;
-      this.renderer.render(this.content.scene, this.camera);
+      this.render();
     });
   }
+
+  render() {
+    this.renderer.render(this.content.scene, this.camera);
+  }
+}
+
+// Paper shows the frame that was chosen; where none was, the last one, which has all of the trajectories. A canvas of
+// WebGL is printed as it was shown last: a copy of what is drawn now stands for it.
+function connectPrint(playback, viewer, stage) {
+  const drawn = viewer.renderer.domElement;
+  const copy = element('canvas', {className: 'printed'});
+  stage.append(copy);
+  let untouched = false;
+  window.addEventListener('beforeprint', () => {
+    untouched = playback.frame === 0;
+    if (untouched) playback.seek(playback.last);
+    viewer.render();
+    copy.width = drawn.width;
+    copy.height = drawn.height;
+    copy.getContext('2d').drawImage(drawn, 0, 0);
+  });
+  window.addEventListener('afterprint', () => untouched && playback.seek(0));
 }
 
 function connectPlayback(run, playback) {
@@ -168,4 +199,5 @@ export function showReplay(run, playback) {
   const viewer = new Viewer(run, playback, stage);
   playback.addEventListener('frame', () => viewer.update());
   connectView(run, viewer);
+  connectPrint(playback, viewer, stage);
 }

@@ -70,21 +70,23 @@ class Lines {
 
 function label(text, color) {
   const canvas = document.createElement('canvas');
-  canvas.width = 128;
-  canvas.height = 64;
   const pen = canvas.getContext('2d');
-  pen.font = 'bold 44px system-ui, sans-serif';
+  const font = 'bold 44px system-ui, sans-serif';
+  pen.font = font;
+  canvas.width = Math.ceil(pen.measureText(text).width) + 16;
+  canvas.height = 64;
+  pen.font = font; // a new size forgets it
   pen.textAlign = 'center';
   pen.textBaseline = 'middle';
   pen.lineWidth = 8;
   pen.strokeStyle = '#0d1720';
-  pen.strokeText(text, 64, 32);
+  pen.strokeText(text, canvas.width / 2, 32);
   pen.fillStyle = color;
-  pen.fillText(text, 64, 32);
+  pen.fillText(text, canvas.width / 2, 32);
   const map = new THREE.CanvasTexture(canvas);
   map.colorSpace = THREE.SRGBColorSpace;
   const sprite = new THREE.Sprite(new THREE.SpriteMaterial({map, sizeAttenuation: false, depthTest: false}));
-  sprite.scale.set(0.09, 0.045, 1);
+  sprite.scale.set((0.045 * canvas.width) / 64, 0.045, 1);
   sprite.center.set(0.5, -0.6);
   return sprite;
 }
@@ -116,7 +118,7 @@ class MovingObject {
     this.face = new THREE.Mesh(new THREE.BufferGeometry(),
       new THREE.MeshBasicMaterial({color: object.color, transparent: true, opacity: 0.22, side: THREE.DoubleSide, depthWrite: false}));
     this.face.frustumCulled = false;
-    this.group.add(this.cloud, this.outline, this.face, label(`#${object.id}`, object.color));
+    this.group.add(this.cloud, this.outline, this.face, label(object.name, object.color));
     const points = new Array(count).fill(null);
     triples(object.pose, 7).forEach((p, i) => (points[object.frame[i]] = p));
     this.way = new Way(points, object.color, lines);
@@ -207,6 +209,19 @@ export class ReplayScene {
   // The vehicle's place in the axes of the view: as it stands in the scene that is drawn.
   vehiclePosition() {
     return this.vehicle.getWorldPosition(new THREE.Vector3());
+  }
+
+  // Of each outline on the screen, the middle of its corners as they are drawn, in the axes of the view.
+  shownOutlines() {
+    const middles = {};
+    for (const {object, group, outline} of this.objects) {
+      if (!group.visible || !outline.visible) continue;
+      const corners = outline.geometry.getAttribute('instanceStart');
+      const middle = new THREE.Vector3();
+      for (let i = 0; i < corners.count; ++i) middle.add(new THREE.Vector3().fromBufferAttribute(corners, i));
+      middles[object.id] = group.localToWorld(middle.divideScalar(corners.count)).toArray();
+    }
+    return middles;
   }
 
   show(frame) {
