@@ -39,7 +39,14 @@ Matrix6d covariance(TextTable& table, std::size_t row, std::size_t column) {
   return cov;
 }
 
-Result<EstimatedRun> read_frames(const fs::path& file) {
+// What frames.csv says that the other files hold of each frame. A file that was cut at the end of a line, or emptied,
+// shows in nothing else. Empty lists where the file is not ours and does not say.
+struct FrameContents {
+  std::vector<bool> has_pose;
+  std::vector<std::int64_t> objects;
+};
+
+Result<EstimatedRun> read_frames(const fs::path& file, FrameContents& contents) {
   Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
   if (!read) return read.error();
   TextTable& table = read.value();
@@ -48,6 +55,8 @@ Result<EstimatedRun> read_frames(const fs::path& file) {
   }
   const auto step = table.find("step_x");
   const auto step_cov = table.find("step_cov_00");
+  // The number of objects stands behind that of groups: a stage is called objects too.
+  const auto pose = table.find("pose_valid"), groups = table.find("groups");
   EstimatedRun run;
   for (std::size_t row = 0; row < table.size(); ++row) {
     EstimatedFrame frame;
@@ -63,6 +72,8 @@ Result<EstimatedRun> read_frames(const fs::path& file) {
       const auto column = table.find(name);
       return column ? static_cast<int>(table.integer(row, *column)) : 0;
     };
+    if (pose) contents.has_pose.push_back(table.integer(row, *pose) != 0);
+    if (groups && *groups + 1 < table.columns()) contents.objects.push_back(table.integer(row, *groups + 1));
     frame.reset_counter = count("reset_counter");
     frame.frames_missed = count("frames_missed");
     if (!run.empty() && frame.capture_time <= run.back().capture_time) table.complain(row, "time does not advance");
@@ -70,6 +81,26 @@ Result<EstimatedRun> read_frames(const fs::path& file) {
     run.push_back(std::move(frame));
   }
   return run;
+}
+
+Error incomplete_file(const fs::path& file, const std::string& held, const std::string& expected) {
+  return {ErrorCode::bad_input, file.string(), "holds " + held + ", frames.csv tells of " + expected,
+          "the file was cut off or damaged: repeat the run"};
+}
+
+Result<Ok> check_contents(const ResultPaths& paths, const FrameContents& contents, bool has_objects,
+                          const EstimatedRun& run) {
+  const auto poses = std::count_if(run.begin(), run.end(), [](const EstimatedFrame& f) { return f.T_world_cam; });
+  const auto expected = std::count(contents.has_pose.begin(), contents.has_pose.end(), true);
+  if (!contents.has_pose.empty() && poses != expected)
+    return incomplete_file(paths.camera, std::to_string(poses) + " poses", std::to_string(expected));
+  for (std::size_t i = 0; has_objects && i < contents.objects.size(); ++i) {
+    const std::size_t held = run[i].objects.size();
+    if (static_cast<std::int64_t>(held) == contents.objects[i]) continue;
+    return incomplete_file(paths.objects, std::to_string(held) + " objects of frame " + std::to_string(run[i].seq),
+                           std::to_string(contents.objects[i]));
+  }
+  return Ok{};
 }
 
 // Poses of camera.tum into the run; a run without frames.csv consists of them.
@@ -158,9 +189,10 @@ Result<EstimatedRun> read_run(const fs::path& folder) {
     return Error{ErrorCode::bad_input, folder.string(), "no camera.tum here", "give the --out folder of a replay"};
   }
   EstimatedRun run;
+  FrameContents contents;
   const bool has_frames = fs::is_regular_file(paths.frames, ignored);
   if (has_frames) {
-    Result<EstimatedRun> frames = read_frames(paths.frames);
+    Result<EstimatedRun> frames = read_frames(paths.frames, contents);
     if (!frames) return frames.error();
     run = std::move(frames.value());
   }
@@ -168,9 +200,11 @@ Result<EstimatedRun> read_run(const fs::path& folder) {
   if (run.empty()) {
     return Error{ErrorCode::bad_input, folder.string(), "the run holds no frame", "repeat the replay"};
   }
-  if (fs::is_regular_file(paths.objects, ignored)) {
+  const bool has_objects = fs::is_regular_file(paths.objects, ignored);
+  if (has_objects) {
     if (Result<Ok> read = read_objects(paths.objects, run); !read) return read.error();
   }
+  if (Result<Ok> fit = check_contents(paths, contents, has_objects, run); !fit) return fit.error();
   return run;
 }
 

@@ -1,7 +1,8 @@
 #pragma once
 // read_run: the files of a run (result_files.h) back into an EstimatedRun. camera.tum alone is enough, so that other
 // systems' trajectories can be judged too; frames.csv adds frames without a pose, states and covariances, objects.csv
-// the objects, both required only for what they carry. Errors name file and line. Thread-bound.
+// the objects, both required only for what they carry. Files that do not hold what frames.csv says are refused. Errors
+// name file and line. Thread-bound.
 
 #include <filesystem>
 #include <optional>

@@ -179,6 +179,32 @@ TEST(ReadRun, ObjectsWithoutOurExtraColumnsAreRead) {
   EXPECT_DOUBLE_EQ(object.cov_M_centroid(5, 5), 4e-6);
 }
 
+// Cut at the end of a line: nothing but the counts of frames.csv tells.
+TEST(ReadRun, FilesThatLackRowsAreAnError) {
+  for (const char* file : {"camera.tum", "objects.csv"}) {
+    const TemporaryFolder folder;
+    write_run(folder);
+    const std::string text = read_text(folder.path() / file);
+    const std::string without_last = text.substr(0, text.rfind('\n', text.size() - 2) + 1);
+    write_text(folder.path() / file, without_last);
+    const Result<EstimatedRun> run = read_run(folder.path());
+    ASSERT_FALSE(run.ok()) << file;
+    EXPECT_EQ(run.error().code, ErrorCode::bad_input);
+    EXPECT_NE(run.error().place.find(file), std::string::npos) << run.error().message();
+    EXPECT_NE(run.error().message().find("cut off"), std::string::npos) << run.error().message();
+  }
+}
+
+TEST(ReadRun, AnEmptyTrajectoryBesideFramesIsAnError) {
+  const TemporaryFolder folder;
+  write_run(folder);
+  write_text(folder.path() / "camera.tum", "");
+  const Result<EstimatedRun> run = read_run(folder.path());
+  ASSERT_FALSE(run.ok());
+  EXPECT_NE(run.error().message().find("holds 0 poses, frames.csv tells of 2"), std::string::npos)
+      << run.error().message();
+}
+
 TEST(ReadRun, FolderWithoutARunSaysSo) {
   const TemporaryFolder folder;
   const Result<EstimatedRun> run = read_run(folder.path());
