@@ -120,8 +120,9 @@ void count_motions(const EstimatedRun& run, const Truth& truth, const std::vecto
     settled += !settling;
     right_settled += is_right && !settling;
   }
-  const auto share = [](std::size_t part, std::size_t whole) {
-    return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
+  const auto share = [](std::size_t part, std::size_t whole) -> std::optional<double> {
+    if (whole == 0) return std::nullopt;
+    return static_cast<double>(part) / static_cast<double>(whole);
   };
   score.right_count_share = share(right, score.frames);
   score.right_count_settled_share = share(right_settled, settled);

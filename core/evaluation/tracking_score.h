@@ -46,9 +46,10 @@ struct TrackingScore {
   double false_per_1000_frames = 0;
   // Share of frames whose number of confirmed objects equals the number of bodies on show. An object kept on a body
   // that rests or is hardly seen right now is not held against it. (Judd & Gammell 2018: correct motion count.)
-  double right_count_share = 0;
+  // Absent where there is no such frame.
+  std::optional<double> right_count_share;
   // The same without the frames within settling_s of a body coming into view or starting to move.
-  double right_count_settled_share = 0;
+  std::optional<double> right_count_settled_share;
 };
 
 [[nodiscard]] TrackingScore tracking_score(const EstimatedRun& run, const Truth& truth,

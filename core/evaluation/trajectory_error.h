@@ -39,8 +39,8 @@ struct TrajectoryError {
   ErrorStatistics step_rad;
   double final_drift_m = 0;
   double final_drift_rad = 0;
-  double final_drift_percent = 0;     // of the path's length; 0 for a path too short to divide by
-  std::optional<SubPathDrift> kitti;  // when a sub-path of 100 m exists
+  std::optional<double> final_drift_percent;  // of the path's length; absent for a path too short to divide by
+  std::optional<SubPathDrift> kitti;          // when a sub-path of 100 m exists
 };
 
 // Poses known on both sides, in order.

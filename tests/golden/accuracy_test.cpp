@@ -74,7 +74,7 @@ TEST(Accuracy, NothingMovesInTheStaticScene) {
 TEST(Accuracy, Kitti06DriftsLessThanOnePercent) {
   PELORUS_USE_REAL_DATA(path, "kitti_odometry/06_first41");
   const Evaluation result = judged(path);
-  EXPECT_LT(result.camera->final_drift_percent, 1.0);
+  EXPECT_LT(result.camera->final_drift_percent.value(), 1.0);
   EXPECT_LT(result.camera->step_m.rmse, 0.01);
   EXPECT_TRUE(result.facts.confirmed.empty());
 }

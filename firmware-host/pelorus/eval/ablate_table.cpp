@@ -81,7 +81,8 @@ AblationFigures ablation_figures(const RunEvaluation& run) {
   figures.since_birth_rad = since_birth_rad.value();
   figures.coverage = coverage.value();
   figures.false_objects = evaluation.tracking.false_objects.size();
-  figures.right_count_share = evaluation.knows_bodies ? evaluation.tracking.right_count_share : kUnknown;
+  figures.right_count_share =
+      evaluation.knows_bodies ? evaluation.tracking.right_count_share.value_or(kUnknown) : kUnknown;
   return figures;
 }
 

@@ -52,7 +52,7 @@ std::string camera_json(const TrajectoryError& camera, const std::optional<Consi
       .raw("step_rad", statistics_json(camera.step_rad))
       .number("final_drift_m", camera.final_drift_m)
       .number("final_drift_rad", camera.final_drift_rad)
-      .number("final_drift_percent", camera.final_drift_percent);
+      .number("final_drift_percent", camera.final_drift_percent.value_or(kUnknown));
   if (camera.kitti) {
     json.raw("kitti_drift", JsonObject()
                                 .integer("sub_paths", static_cast<long long>(camera.kitti->count))
@@ -77,7 +77,7 @@ std::string body_json(const BodyEvaluation& body) {
       .raw("since_birth_rad", statistics_json(body.motion.since_birth_rad))
       .integer("frames_on_show", static_cast<long long>(body.score.frames_on_show))
       .integer("frames_covered", static_cast<long long>(body.score.frames_covered))
-      .number("coverage", body.score.coverage())
+      .number("coverage", body.score.frames_on_show > 0 ? body.score.coverage() : kUnknown)
       .integer("identity_switches", body.score.identity_switches)
       .number("time_to_detection_s", body.score.time_to_detection_s.value_or(kUnknown))
       .raw("nees", consistency_json(body.consistency))
@@ -98,8 +98,8 @@ std::string objects_json(const Evaluation& evaluation) {
   }
   return JsonObject()
       .raw("bodies", json_array(bodies))
-      .number("right_count_share", evaluation.tracking.right_count_share)
-      .number("right_count_settled_share", evaluation.tracking.right_count_settled_share)
+      .number("right_count_share", evaluation.tracking.right_count_share.value_or(kUnknown))
+      .number("right_count_settled_share", evaluation.tracking.right_count_settled_share.value_or(kUnknown))
       .raw("false_objects", json_array(false_objects))
       .number("false_per_1000_frames", evaluation.tracking.false_per_1000_frames)
       .raw("nees", consistency_json(evaluation.object_consistency))

@@ -33,9 +33,11 @@ Goal below(double value, const std::optional<double>& limit, double scale, const
 Goal at_most(std::size_t count, const std::optional<double>& limit) {
   return limit ? Goal{format("%g", *limit), static_cast<double>(count) <= *limit} : Goal{};
 }
-Goal above_percent(double share, const std::optional<double>& limit_percent) {
-  return limit_percent ? Goal{format("> %g %%", *limit_percent), 100 * share > *limit_percent} : Goal{};
+Goal above_percent(const std::optional<double>& share, const std::optional<double>& limit_percent) {
+  return share && limit_percent ? Goal{format("> %g %%", *limit_percent), 100 * *share > *limit_percent} : Goal{};
 }
+
+std::string share_text(const std::optional<double>& share) { return share ? format("%.1f %%", 100 * *share) : "-"; }
 
 std::string line(const std::string& name, const std::string& value, const Goal& goal = {},
                  const std::string& paper = "") {
@@ -114,9 +116,9 @@ std::string camera_text(const RunEvaluation& run) {
                angle_goal(camera.absolute_rad.max, goals.camera_absolute_max_deg));
   text += line("ATE, RMSE after alignment", length(camera.ate_rmse_m, fine));
   text += line("final drift", length(camera.final_drift_m, fine));
-  if (camera.path_length_m >= kStandstill_m) {
-    text += line("final drift over the path", format("%.3f %%", camera.final_drift_percent),
-                 below(camera.final_drift_percent, goals.camera_drift_percent, 1, "%"));
+  if (camera.final_drift_percent) {
+    text += line("final drift over the path", format("%.3f %%", *camera.final_drift_percent),
+                 below(*camera.final_drift_percent, goals.camera_drift_percent, 1, "%"));
   }
   if (camera.kitti) {
     text += line("KITTI drift, 100-800 m", format("%.3f %%", camera.kitti->translation_percent),
@@ -186,9 +188,9 @@ std::string tracking_text(const RunEvaluation& run) {
   const TrackingScore& tracking = run.evaluation.tracking;
   std::string text = heading("Objects as a whole");
   if (!run.evaluation.bodies.empty() || !tracking.false_objects.empty()) {
-    text += line("right number of motions", format("%.1f %%", 100 * tracking.right_count_share),
+    text += line("right number of motions", share_text(tracking.right_count_share),
                  above_percent(tracking.right_count_share, run.goals.right_count_percent));
-    text += line("  1 s after each body's appearing", format("%.1f %%", 100 * tracking.right_count_settled_share));
+    text += line("  1 s after each body's appearing", share_text(tracking.right_count_settled_share));
   }
   text += line("false objects",
                format("%zu (%.1f per 1000)", tracking.false_objects.size(), tracking.false_per_1000_frames),

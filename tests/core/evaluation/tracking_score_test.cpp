@@ -28,7 +28,7 @@ TEST(TrackingScore, PerfectRunIsPerfect) {
   EXPECT_DOUBLE_EQ(score.bodies[1].coverage(), 1);
   EXPECT_EQ(score.bodies[1].identity_switches, 0);
   EXPECT_DOUBLE_EQ(score.bodies[1].time_to_detection_s.value(), 0);
-  EXPECT_DOUBLE_EQ(score.right_count_share, 1);
+  EXPECT_DOUBLE_EQ(score.right_count_share.value(), 1);
   EXPECT_TRUE(score.false_objects.empty());
 }
 
@@ -38,8 +38,8 @@ TEST(TrackingScore, LateConfirmationCostsCoverageAndTime) {
   const TrackingScore score = score_of(made);
   EXPECT_DOUBLE_EQ(score.bodies[0].coverage(), 15.0 / 20);
   EXPECT_NEAR(score.bodies[0].time_to_detection_s.value(), 0.5, 1e-9);
-  EXPECT_DOUBLE_EQ(score.right_count_share, 15.0 / 20);
-  EXPECT_DOUBLE_EQ(score.right_count_settled_share, 1) << "half a second is within the settling time";
+  EXPECT_DOUBLE_EQ(score.right_count_share.value(), 15.0 / 20);
+  EXPECT_DOUBLE_EQ(score.right_count_settled_share.value(), 1) << "half a second is within the settling time";
 }
 
 TEST(TrackingScore, BodyNeverDetectedHasNoTimeToDetection) {
@@ -48,7 +48,7 @@ TEST(TrackingScore, BodyNeverDetectedHasNoTimeToDetection) {
   const TrackingScore score = score_of(made);
   EXPECT_FALSE(score.bodies[0].time_to_detection_s);
   EXPECT_DOUBLE_EQ(score.bodies[0].coverage(), 0);
-  EXPECT_DOUBLE_EQ(score.right_count_share, 0);
+  EXPECT_DOUBLE_EQ(score.right_count_share.value(), 0);
 }
 
 TEST(TrackingScore, NewIdOnTheSameBodyIsASwitch) {
@@ -56,6 +56,16 @@ TEST(TrackingScore, NewIdOnTheSameBodyIsASwitch) {
   for (std::size_t i = 10; i < 20; ++i) made.object(i, 0).id = BodyId{7};
   EXPECT_EQ(score_of(made).bodies[0].identity_switches, 1);
   EXPECT_EQ(score_of(made).bodies[0].ids.size(), 2U);
+}
+
+TEST(TrackingScore, AShareOfNoFramesIsUnknown) {
+  HandMade made = hand_made(6, 1);  // half a second: the body has not settled
+  const TrackingScore score = score_of(made);
+  EXPECT_TRUE(score.right_count_share);
+  EXPECT_FALSE(score.right_count_settled_share);
+  made.run.resize(1);
+  made.truth.frames.resize(1);
+  EXPECT_FALSE(score_of(made).right_count_share) << "no motion has happened yet";
 }
 
 TEST(TrackingScore, NewIdAfterMoreThanTwoSecondsOutOfViewIsForgiven) {
@@ -94,7 +104,7 @@ TEST(TrackingScore, ObjectFarFromEveryBodyIsFalse) {
   EXPECT_EQ(score.false_objects[0].frames, 20U);
   EXPECT_FALSE(score.false_objects[0].duplicate);
   EXPECT_DOUBLE_EQ(score.false_per_1000_frames, 50);
-  EXPECT_DOUBLE_EQ(score.right_count_share, 0);
+  EXPECT_DOUBLE_EQ(score.right_count_share.value(), 0);
 }
 
 TEST(TrackingScore, ObjectOnABodyThatNeverMovesIsFalseAndNamesIt) {
@@ -124,7 +134,7 @@ TEST(TrackingScore, ObjectKeptThroughAStopOfItsBodyIsNotHeldAgainstIt) {
   HandMade made = hand_made(20, 1);
   for (std::size_t i = 10; i < 15; ++i) made.body(i, 0).moving = false;
   const TrackingScore score = score_of(made);
-  EXPECT_DOUBLE_EQ(score.right_count_share, 1);
+  EXPECT_DOUBLE_EQ(score.right_count_share.value(), 1);
   EXPECT_EQ(score.bodies[0].frames_on_show, 14U);
   EXPECT_TRUE(score.false_objects.empty());
 }
@@ -137,13 +147,13 @@ TEST(TrackingScore, BodyHardlySeenIsNotDemanded) {
   }
   const TrackingScore score = score_of(made);
   EXPECT_DOUBLE_EQ(score.bodies[0].coverage(), 1);
-  EXPECT_DOUBLE_EQ(score.right_count_share, 1);
+  EXPECT_DOUBLE_EQ(score.right_count_share.value(), 1);
 }
 
 TEST(TrackingScore, FrameWithoutPoseIsNotARightCount) {
   HandMade made = hand_made(11, 0);
   made.run[5].T_world_cam.reset();
-  EXPECT_DOUBLE_EQ(score_of(made).right_count_share, 0.9);
+  EXPECT_DOUBLE_EQ(score_of(made).right_count_share.value(), 0.9);
 }
 
 }  // namespace

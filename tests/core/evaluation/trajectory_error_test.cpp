@@ -49,9 +49,16 @@ TEST(TrajectoryError, KnownScaleErrorGivesKnownStepAndDrift) {
   EXPECT_NEAR(error->step_m.mean, 0.01, 1e-12);
   EXPECT_NEAR(error->step_m.rmse, 0.01, 1e-12);
   EXPECT_NEAR(error->final_drift_m, 0.4, 1e-9);
-  EXPECT_NEAR(error->final_drift_percent, 2.0, 1e-9);
+  EXPECT_NEAR(error->final_drift_percent.value(), 2.0, 1e-9);
   EXPECT_NEAR(error->absolute_m.mean, 0.01 * 41 / 2, 1e-9);
   EXPECT_FALSE(error->kitti) << "no sub-path of 100 m exists";
+}
+
+TEST(TrajectoryError, APathTooShortToDivideByHasNoShareOfIt) {
+  const auto error = trajectory_error(straight(4, 0.1, 1.02));
+  ASSERT_TRUE(error);
+  EXPECT_GT(error->final_drift_m, 0);
+  EXPECT_FALSE(error->final_drift_percent);
 }
 
 TEST(TrajectoryError, SubPathsOfAScaledPathDriftByTheScale) {

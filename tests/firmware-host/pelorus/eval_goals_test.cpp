@@ -102,6 +102,19 @@ TEST(EvalGoals, BodiesAndCountsToo) {
   EXPECT_TRUE(holds(line_of(run, "false objects"), "ok"));
 }
 
+TEST(EvalGoals, WhatIsUnknownIsNullAndADash) {
+  RunEvaluation run = dive_run();
+  run.evaluation.camera->final_drift_percent.reset();
+  run.evaluation.bodies.emplace_back();  // never on show
+  const std::string json = to_json(run);
+  for (const char* name : {"final_drift_percent", "right_count_share", "right_count_settled_share", "coverage"}) {
+    EXPECT_TRUE(holds(json, "\"" + std::string(name) + "\":null")) << name << json;
+  }
+  EXPECT_FALSE(holds(to_table(run), "final drift over the path"));
+  EXPECT_TRUE(holds(line_of(run, "  1 s after each"), " -"));
+  EXPECT_FALSE(holds(line_of(run, "right number of motions"), "%"));
+}
+
 TEST(EvalGoals, DriftOfARoad) {
   RunEvaluation run = dive_run();
   run.exact_truth = false;
