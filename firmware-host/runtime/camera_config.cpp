@@ -15,10 +15,6 @@ namespace {
 
 using Cameras = std::vector<std::unique_ptr<Camera>>;
 
-Error refused(const std::string& key, const std::string& what, const std::string& cure) {
-  return {ErrorCode::bad_configuration, "camera." + key, what, cure};
-}
-
 #ifdef PELORUS_WITH_ARAVIS
 AravisConfig aravis_config(const CameraConfig& c, const std::string& device) {
   AravisConfig a;
@@ -44,15 +40,21 @@ AravisConfig aravis_config(const CameraConfig& c, const std::string& device) {
 }
 #endif
 
-Result<Cameras> make_aravis([[maybe_unused]] const CameraConfig& config, [[maybe_unused]] const CaptureClock& clock) {
-#ifdef PELORUS_WITH_ARAVIS
-  if (config.right.empty()) return refused("right", "is not given", "GigE Vision needs two cameras: name both");
+Cameras make_aravis([[maybe_unused]] const CameraConfig& config, [[maybe_unused]] const CaptureClock& clock) {
   Cameras cameras;
+#ifdef PELORUS_WITH_ARAVIS
   for (const std::string& device : {config.left, config.right})
     cameras.push_back(std::make_unique<AravisCamera>(aravis_config(config, device), clock));
+#endif
   return cameras;
+}
+
+std::vector<CameraProblem> aravis_problems([[maybe_unused]] const CameraConfig& config) {
+#ifdef PELORUS_WITH_ARAVIS
+  if (config.right.empty()) return {{"right", "is not given", "GigE Vision needs two cameras: name both"}};
+  return {};
 #else
-  return refused("left", "GigE Vision is not built in", "build with -DPELORUS_WITH_ARAVIS=ON");
+  return {{"left", "GigE Vision is not built in", "build with -DPELORUS_WITH_ARAVIS=ON"}};
 #endif
 }
 
@@ -72,17 +74,25 @@ V4l2Config v4l2_config(const CameraConfig& c, const std::string& device) {
 }
 #endif
 
-Result<Cameras> make_v4l2([[maybe_unused]] const CameraConfig& config, [[maybe_unused]] const CaptureClock& clock) {
-#ifdef PELORUS_WITH_V4L2
-  const char* cure = "leave it out and set it with v4l2-ctl or a udev rule";
-  if (!config.trigger.empty()) return refused("trigger", "cannot be set through V4L2", cure);
-  if (config.gain_db >= 0) return refused("gain_db", "cannot be set through V4L2, whose gains have no unit", cure);
+Cameras make_v4l2([[maybe_unused]] const CameraConfig& config, [[maybe_unused]] const CaptureClock& clock) {
   Cameras cameras;
+#ifdef PELORUS_WITH_V4L2
   cameras.push_back(std::make_unique<V4l2Camera>(v4l2_config(config, config.left), clock));
   if (!config.right.empty()) cameras.push_back(std::make_unique<V4l2Camera>(v4l2_config(config, config.right), clock));
+#endif
   return cameras;
+}
+
+std::vector<CameraProblem> v4l2_problems([[maybe_unused]] const CameraConfig& config) {
+#ifdef PELORUS_WITH_V4L2
+  const char* cure = "leave it out and set it with v4l2-ctl or a udev rule";
+  std::vector<CameraProblem> problems;
+  if (!config.trigger.empty()) problems.push_back({"trigger", "cannot be set through V4L2", cure});
+  if (config.gain_db >= 0)
+    problems.push_back({"gain_db", "cannot be set through V4L2, whose gains have no unit", cure});
+  return problems;
 #else
-  return refused("left", "V4L2 is not built in", "build with -DPELORUS_WITH_V4L2=ON");
+  return {{"left", "V4L2 is not built in", "build with -DPELORUS_WITH_V4L2=ON"}};
 #endif
 }
 
@@ -92,12 +102,25 @@ StereoSyncConfig sync_config(const CameraConfig& config) {
   return {config.pair_by == "sequence" ? PairBy::sequence : PairBy::time, config.tolerance_ms};
 }
 
+std::vector<CameraProblem> camera_problems(const std::string& driver, const CameraConfig& config) {
+  if (driver != "aravis" && driver != "v4l2")
+    return {{"left", "no driver '" + driver + "' for live cameras", "set source.kind"}};
+  std::vector<CameraProblem> problems = driver == "aravis" ? aravis_problems(config) : v4l2_problems(config);
+  if (config.left.empty()) {
+    problems.insert(problems.begin(), {"left", "is not given", "name the left camera's address or device file"});
+  } else if (config.left == config.right) {
+    problems.insert(problems.begin(), {"right", "is the left camera again", "name the other one"});
+  }
+  return problems;
+}
+
 Result<Cameras> make_cameras(const std::string& driver, const CameraConfig& config, const CaptureClock& clock) {
-  if (config.left.empty()) return refused("left", "is not given", "name the left camera's address or device file");
-  if (config.left == config.right) return refused("right", "is the left camera again", "name the other one");
-  if (driver == "aravis") return make_aravis(config, clock);
-  if (driver == "v4l2") return make_v4l2(config, clock);
-  return refused("left", "no driver '" + driver + "' for live cameras", "set source.kind");
+  const std::vector<CameraProblem> problems = camera_problems(driver, config);
+  if (!problems.empty()) {
+    const CameraProblem& first = problems.front();
+    return Error{ErrorCode::bad_configuration, "camera." + first.key, first.what, first.cure};
+  }
+  return driver == "aravis" ? make_aravis(config, clock) : make_v4l2(config, clock);
 }
 
 }  // namespace pelorus

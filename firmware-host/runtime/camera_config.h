@@ -40,8 +40,17 @@ struct CameraConfig {
 
 [[nodiscard]] StereoSyncConfig sync_config(const CameraConfig& config);
 
+// What cannot be whatever the devices say: no device named, a setting that the driver does not have, a driver that is
+// not built in.
+struct CameraProblem {
+  std::string key;  // in section `camera`
+  std::string what;
+  std::string cure;
+};
+[[nodiscard]] std::vector<CameraProblem> camera_problems(const std::string& driver, const CameraConfig& config);
+
 // One camera of two views or two of one, left first. `driver`: "aravis" or "v4l2".
-// Errors: what cannot be whatever the devices say (no device named, driver not built in).
+// Errors: the first of camera_problems.
 [[nodiscard]] Result<std::vector<std::unique_ptr<Camera>>> make_cameras(const std::string& driver,
                                                                         const CameraConfig& config,
                                                                         const CaptureClock& clock);

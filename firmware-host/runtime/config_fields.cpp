@@ -276,18 +276,22 @@ std::vector<ConfigField> config_fields(PipelineConfig& config) {
   return fields.take();
 }
 
-std::vector<std::string> config_conflicts(const PipelineConfig& config) {
-  std::vector<std::string> conflicts;
-  const auto require = [&](bool holds, const char* rule) {
-    if (!holds) conflicts.emplace_back(rule);
+std::vector<ConfigConflict> config_conflicts(const PipelineConfig& config) {
+  std::vector<ConfigConflict> conflicts;
+  const auto require = [&](bool holds, std::vector<std::string> keys, const char* rule) {
+    if (!holds) conflicts.push_back({std::move(keys), rule, "change one of the two"});
   };
   const StereoMatchConfig& stereo = config.front_end.stereo;
   const EgoMotionConfig& ego = config.ego_motion;
-  require(config.front_end.surf.sampling_step != 3, "surf.sampling_step_px must be 1, 2 or 4");
-  require(stereo.min_disparity_px < stereo.max_disparity_px, "stereo.min_disparity_px must be below max_disparity_px");
+  require(config.front_end.surf.sampling_step != 3, {"surf.sampling_step_px"},
+          "surf.sampling_step_px must be 1, 2 or 4");
+  require(stereo.min_disparity_px < stereo.max_disparity_px, {"stereo.min_disparity_px", "stereo.max_disparity_px"},
+          "stereo.min_disparity_px must be below max_disparity_px");
   require(ego.min_sigma_px <= ego.start_sigma_px && ego.start_sigma_px <= ego.max_sigma_px,
+          {"ego_motion.start_sigma_px", "ego_motion.min_sigma_px", "ego_motion.max_sigma_px"},
           "ego_motion.start_sigma_px must lie between min_sigma_px and max_sigma_px");
   require(ego.min_static_points <= ego.degraded_static_points,
+          {"ego_motion.min_static_points", "ego_motion.degraded_static_points"},
           "ego_motion.min_static_points must not be above degraded_static_points");
   return conflicts;
 }

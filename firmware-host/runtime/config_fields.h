@@ -30,8 +30,15 @@ struct ConfigField {
 // the pipeline. Valid while `config` lives.
 [[nodiscard]] std::vector<ConfigField> service_fields(ServiceConfig& config);
 
-// Rules between settings that `config` breaks, each a sentence; empty when all hold.
-[[nodiscard]] std::vector<std::string> config_conflicts(const PipelineConfig& config);
-[[nodiscard]] std::vector<std::string> service_conflicts(const ServiceConfig& config);
+// A rule between settings that does not hold.
+struct ConfigConflict {
+  std::vector<std::string> keys;  // "section.key", the one to look at first
+  std::string rule;               // a sentence
+  std::string cure;
+};
+
+// The rules that `config` breaks; empty when all hold.
+[[nodiscard]] std::vector<ConfigConflict> config_conflicts(const PipelineConfig& config);
+[[nodiscard]] std::vector<ConfigConflict> service_conflicts(const ServiceConfig& config);
 
 }  // namespace pelorus

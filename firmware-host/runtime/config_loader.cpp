@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <set>
@@ -83,6 +84,19 @@ class FileReader {
     read_sections(documents[0]);
   }
 
+  // Between settings as they are with this file. A setting that could not be read has nothing to contradict.
+  void report_conflicts(const std::vector<ConfigConflict>& conflicts) {
+    for (const ConfigConflict& conflict : conflicts) {
+      int line = 0;  // all keys in earlier files
+      bool all_read = true;
+      for (const std::string& key : conflict.keys) {
+        all_read = all_read && !unread_.contains(key);
+        if (const auto found = lines_.find(key); line == 0 && found != lines_.end()) line = found->second;
+      }
+      if (all_read) problems_.push_back({line, conflict.rule, conflict.cure});
+    }
+  }
+
   [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
 
  private:
@@ -120,7 +134,10 @@ class FileReader {
       if (field == fields_.end()) {
         report_unknown_key(entry.first, section, key);
       } else {
+        const std::size_t before = problems_.size();
+        lines_.emplace(section + "." + key, line_of(entry.first));
         read_value(*field, entry.second);
+        if (problems_.size() > before) unread_.insert(section + "." + key);
       }
     }
   }
@@ -192,6 +209,8 @@ class FileReader {
 
   std::vector<ConfigField> fields_;
   std::vector<Problem> problems_;
+  std::map<std::string, int> lines_;  // of the keys in this file
+  std::set<std::string> unread_;      // keys whose value is a problem
 };
 
 Error to_error(const std::filesystem::path& file, std::vector<Problem> problems) {
@@ -223,13 +242,9 @@ Result<Ok> apply_config_file(const std::filesystem::path& file, ServiceConfig& c
   } catch (const YAML::Exception& e) {
     return to_error(file, {{e.mark.line + 1, "not valid YAML: " + e.msg, "check indentation, colons and tabs"}});
   }
-  std::vector<Problem> problems = reader.problems();
-  if (problems.empty()) {
-    for (const std::string& rule : config_conflicts(changed.pipeline))
-      problems.push_back({0, rule, "change one of the two"});
-    for (const std::string& rule : service_conflicts(changed)) problems.push_back({0, rule, "see config/pelorus.yaml"});
-  }
-  if (!problems.empty()) return to_error(file, problems);
+  reader.report_conflicts(config_conflicts(changed.pipeline));
+  reader.report_conflicts(service_conflicts(changed));
+  if (!reader.problems().empty()) return to_error(file, reader.problems());
   config = changed;
   return Ok{};
 }

@@ -2,6 +2,7 @@
 
 #include "firmware-host/runtime/config_fields.h"
 #include "firmware-host/runtime/field_list.h"
+#include "firmware-host/runtime/lcm_url.h"
 
 namespace pelorus {
 namespace {
@@ -119,18 +120,27 @@ std::vector<ConfigField> service_fields(ServiceConfig& config) {
   return fields.take();
 }
 
-std::vector<std::string> service_conflicts(const ServiceConfig& config) {
-  std::vector<std::string> conflicts;
-  const auto require = [&](bool holds, const char* rule) {
-    if (!holds) conflicts.emplace_back(rule);
+std::vector<ConfigConflict> service_conflicts(const ServiceConfig& config) {
+  std::vector<ConfigConflict> conflicts;
+  const auto require = [&](bool holds, std::vector<std::string> keys, const char* rule, const char* cure) {
+    if (!holds) conflicts.push_back({std::move(keys), rule, cure});
   };
+  const char* const see = "see config/pelorus.yaml";
   // LCM takes 63 characters; the longest of our channels adds ".VIS_COMMAND_ACK" to the vehicle.
-  require(!config.lcm.vehicle.empty() && config.lcm.vehicle.size() <= 40, "lcm.vehicle must have 1 to 40 characters");
-  const bool live = config.source.kind == "aravis" || config.source.kind == "v4l2";
-  require(!live || !config.camera.left.empty(), "camera.left must name a device when source.kind is a live camera");
-  require(!live || !config.source.calibration.empty(), "source.calibration must name a file for live cameras");
+  require(!config.lcm.vehicle.empty() && config.lcm.vehicle.size() <= 40, {"lcm.vehicle"},
+          "lcm.vehicle must have 1 to 40 characters", see);
+  require(!config.lcm.enabled || config.lcm.url.empty() || is_lcm_url(config.lcm.url), {"lcm.url", "lcm.enabled"},
+          "lcm.url is no address of LCM", kLcmUrlCure);
   require(config.camera.rate_hz <= 0 || config.camera.tolerance_ms < 500 / config.camera.rate_hz,
-          "camera.tolerance_ms must be below half the period of camera.rate_hz");
+          {"camera.tolerance_ms", "camera.rate_hz"},
+          "camera.tolerance_ms must be below half the period of camera.rate_hz", see);
+  if (config.source.kind != "aravis" && config.source.kind != "v4l2") return conflicts;
+  require(!config.source.calibration.empty(), {"source.calibration", "source.kind"},
+          "source.calibration must name a file for live cameras", see);
+  for (const CameraProblem& problem : camera_problems(config.source.kind, config.camera)) {
+    const std::string key = "camera." + problem.key;
+    conflicts.push_back({{key, "source.kind"}, key + " " + problem.what, problem.cure});
+  }
   return conflicts;
 }
 

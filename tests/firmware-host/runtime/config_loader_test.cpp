@@ -182,15 +182,6 @@ TEST_F(ConfigFile, TextsTakeTheListedWordsOnly) {
   EXPECT_NE(message.find(line(3)), std::string::npos) << message;
 }
 
-TEST_F(ConfigFile, LiveCamerasNeedADeviceACalibrationAndATolerance) {
-  EXPECT_NE(problems_of("source:\n  kind: aravis\n  calibration: c\n").find("camera.left"), std::string::npos);
-  const std::string camera = "camera:\n  left: 10.0.0.1\n  right: 10.0.0.2\n";
-  EXPECT_NE(problems_of("source:\n  kind: aravis\n" + camera).find("source.calibration"), std::string::npos);
-  const std::string source = "source:\n  kind: aravis\n  calibration: c\n";
-  EXPECT_EQ(problems_of(source + camera), "none");
-  EXPECT_NE(problems_of(source + camera + "  tolerance_ms: 25\n").find("half the period"), std::string::npos);
-}
-
 TEST_F(ConfigFile, ServiceAndPipelineSettingsComeFromOneFile) {
   std::ofstream(path_) << "source:\n  path: dive\nsteps:\n  net_filter: false\n";
   ServiceConfig service;
@@ -281,15 +272,6 @@ TEST_F(ConfigFile, AllProblemsAreListedAndNothingIsApplied) {
   EXPECT_NE(message.find("4 problems"), std::string::npos) << message;
   for (int number : {3, 4, 5, 6}) EXPECT_NE(message.find(line(number)), std::string::npos) << number << message;
   EXPECT_TRUE(config_.steps.net_filter);
-}
-
-TEST_F(ConfigFile, SettingsThatContradictEachOtherAreRefused) {
-  const std::string message = problems_of("stereo:\n  min_disparity_px: 50\n  max_disparity_px: 20\n");
-  EXPECT_NE(message.find("must be below max_disparity_px"), std::string::npos) << message;
-  EXPECT_NE(problems_of("surf:\n  sampling_step_px: 3\n"), "none");
-  EXPECT_NE(problems_of("ego_motion:\n  start_sigma_px: 9\n"), "none");
-  EXPECT_NE(problems_of("ego_motion:\n  min_static_points: 900\n"), "none");
-  EXPECT_TRUE(config_conflicts(config_).empty()) << "nothing was applied, and the defaults agree";
 }
 
 TEST_F(ConfigFile, BrokenYamlNamesTheLine) {
