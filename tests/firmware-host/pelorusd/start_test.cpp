@@ -48,6 +48,29 @@ TEST(Start, EachKindOfFailureHasItsExitCodeAndSaysWhere) {
   EXPECT_NE(no_calibration.text.find("source.calibration"), std::string::npos) << no_calibration.text;
 }
 
+TEST(Start, AnUnknownWordIsNamed) {
+  const char* const help = " (pelorusd --help tells what there is)\n";
+  EXPECT_EQ(start("--nonsense").text, std::string("pelorusd: '--nonsense' is no option of pelorusd") + help);
+  EXPECT_EQ(start("extra").text, std::string("pelorusd: 'extra' is not expected") + help);
+  EXPECT_EQ(start("--confg x").text, std::string("pelorusd: '--confg' is no option of pelorusd") + help);
+  EXPECT_EQ(start("--config a --confg x").text, std::string("pelorusd: '--confg' is no option of pelorusd") + help);
+  EXPECT_EQ(start("").text, std::string("pelorusd: --config is required") + help);
+}
+
+TEST(Start, ACalibrationThatCannotBeUsedHasItsExitCode) {
+  const TemporaryFolder folder;
+  const std::string calibration = (folder.path() / "calibration.yaml").string();
+  test::write_text(calibration, "x: 1\n");
+  const Outcome outcome = start_with("source:\n  path: \"" + test::rendered_dive().string() + "\"\n  calibration: \"" +
+                                     calibration + "\"\n");
+  EXPECT_EQ(outcome.exit_code, 4);
+  EXPECT_NE(outcome.text.find("calibration.yaml"), std::string::npos) << outcome.text;
+}
+
+TEST(Start, WhatHelpPromisesIsWhatTheProgramCanDo) {
+  EXPECT_EQ(start("--help").text.find("7 device"), std::string::npos) << "absent devices do not end the service";
+}
+
 TEST(Start, ExchangedPicturesAreRefused) {
   const TemporaryFolder folder;
   const std::filesystem::path dive = test::copied_dive(folder);
