@@ -15,6 +15,12 @@ check "every verb has its manual page" bash -c '
 check "completion knows the values of an option" same "kalibr" bash -c '
   . /usr/share/bash-completion/completions/pelorus; COMP_WORDS=(pelorus calib convert --to k) COMP_CWORD=4
   _pelorus; echo "${COMPREPLY[@]}"'
+check "completion knows the options of the service" same "--check-config" bash -c '
+  . /usr/share/bash-completion/completions/pelorusd; COMP_WORDS=(pelorusd --ch) COMP_CWORD=1
+  _pelorusd; echo "${COMPREPLY[@]}"'
+check "the service has its manual page in section 8" bash -c 'zcat /usr/share/man/man8/pelorusd.8.gz | grep -q check-config'
+check "pelorus-spy has its manual page" bash -c 'zcat /usr/share/man/man1/pelorus-spy.1.gz | grep -q "^.SH"'
+check "the udev rule of the cameras is there" grep -q '^SUBSYSTEM' /usr/lib/udev/rules.d/60-pelorus-cameras.rules
 check "the service's account is there, without a shell, in group video" bash -c '
   [[ $(getent passwd pelorus) == *:/var/lib/pelorus:*nologin ]] && id -nG pelorus | grep -qw video'
 check "the configuration is a conffile and nothing else is" same "/etc/pelorus/pelorus.yaml" bash -c '

@@ -66,6 +66,16 @@ next_version() {
 files() { (cd "$root" && find . -xdev \( -path ./proc -o -path ./tmp -o -path ./var/lib/dpkg -o -path ./var/log \
   -o -path ./var/cache \) -prune -o -print | sort); }
 
+printf '== lintian\n'
+if command -v lintian >/dev/null; then
+  # Nothing is suppressed: warnings are shown, errors fail.
+  lintian --tag-display-limit 0 --allow-root "$main_deb" "$dev_deb" >"$work/lintian.log" 2>&1
+  cat "$work/lintian.log"
+  check "lintian: $(grep -c '^W:' "$work/lintian.log") warnings, no error" same 0 grep -c '^E:' "$work/lintian.log"
+else
+  printf 'skipped: no lintian here\n'
+fi
+
 printf '== a bare Debian 12\n'
 prepare_root >"$work/prepare.log" 2>&1 || { tail -20 "$work/prepare.log"; echo "package_test.sh: no bare system" >&2; exit 77; }
 files >"$work/before"
