@@ -91,5 +91,5 @@ start_screen
 start_service
 top_picture
 spy_picture
-for picture in top spy report_replay report_paths report_errors; do few_colors "$pictures/$picture.png"; done
-ls -l "$pictures"/{top,spy,report_replay,report_paths,report_errors}.png
+for picture in top spy report_replay report_paths report_errors report_figures; do few_colors "$pictures/$picture.png"; done
+ls -l "$pictures"/{top,spy,report_replay,report_paths,report_errors,report_figures}.png

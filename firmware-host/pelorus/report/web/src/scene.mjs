@@ -78,10 +78,12 @@ function label(text, color) {
   pen.font = font; // a new size forgets it
   pen.textAlign = 'center';
   pen.textBaseline = 'middle';
-  pen.lineWidth = 8;
-  pen.strokeStyle = '#0d1720';
+  // White on the body's color: dark colors would not be read on dark water.
+  pen.lineJoin = 'round';
+  pen.lineWidth = 12;
+  pen.strokeStyle = color;
   pen.strokeText(text, canvas.width / 2, 32);
-  pen.fillStyle = color;
+  pen.fillStyle = '#ffffff';
   pen.fillText(text, canvas.width / 2, 32);
   const map = new THREE.CanvasTexture(canvas);
   map.colorSpace = THREE.SRGBColorSpace;
