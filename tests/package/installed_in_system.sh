@@ -18,7 +18,7 @@ check "completion knows the values of an option" same "kalibr" bash -c '
 check "completion knows the options of the service" same "--check-config" bash -c '
   . /usr/share/bash-completion/completions/pelorusd; COMP_WORDS=(pelorusd --ch) COMP_CWORD=1
   _pelorusd; echo "${COMPREPLY[@]}"'
-check "the service has its manual page in section 8" bash -c 'zcat /usr/share/man/man8/pelorusd.8.gz | grep -q check-config'
+check "the service has its manual page in section 8" bash -c 'zcat /usr/share/man/man8/pelorusd.8.gz | grep -q "check.*config"'
 check "pelorus-spy has its manual page" bash -c 'zcat /usr/share/man/man1/pelorus-spy.1.gz | grep -q "^.SH"'
 check "the udev rule of the cameras is there" grep -q '^SUBSYSTEM' /usr/lib/udev/rules.d/60-pelorus-cameras.rules
 check "the service's account is there, without a shell, in group video" bash -c '
