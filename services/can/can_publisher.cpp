@@ -8,6 +8,10 @@ namespace {
 constexpr Duration kLookAgain = std::chrono::milliseconds(2);  // a frame takes 0.25 ms at 500 kbit/s
 constexpr Duration kNothingToDo = std::chrono::milliseconds(100);
 
+bool is_no_bus(CanBusState state) {
+  return state == CanBusState::absent || state == CanBusState::down || state == CanBusState::bus_off;
+}
+
 }  // namespace
 
 std::string status_text(const CanStatus& status, const std::string& interface) {
@@ -57,11 +61,11 @@ Duration CanPublisher::tend() {
   return waiting_ ? kLookAgain : kNothingToDo;
 }
 
-// A set that is replaced by the next one.
+// A set that is replaced by the next one, or has nobody left to go to.
 void CanPublisher::drop_rest() {
   if (!waiting_) return;
   waiting_ = begun_ = false;
-  ++now_.sets_dropped;
+  ++(is_no_bus(now_.bus.state) ? now_.sets_unheard : now_.sets_dropped);
 }
 
 // Encoded when it is written, not when it was made: its age is true then.
@@ -98,19 +102,22 @@ void CanPublisher::send_rest() {
       return;
     }
     if (outcome == CanSendOutcome::gone) {
-      drop_rest();
       close(CanBusState::absent, config_.interface + " is gone");
       return;
     }
     ++next_frame_;
-  }
-  if (now_.bus.state == CanBusState::down || now_.bus.state == CanBusState::absent) {
-    now_.bus.state = CanBusState::active;
-    now_.trouble.clear();
+    note_taken();
   }
   // A controller that is off swallows what it is given.
   ++(now_.bus.state == CanBusState::bus_off ? now_.sets_unheard : now_.sets_sent);
   waiting_ = begun_ = false;
+}
+
+// An interface that takes a frame is up.
+void CanPublisher::note_taken() {
+  if (now_.bus.state != CanBusState::down && now_.bus.state != CanBusState::absent) return;
+  now_.bus.state = CanBusState::active;
+  now_.trouble.clear();
 }
 
 // Error frames, and whether the interface is still there.
@@ -159,6 +166,7 @@ void CanPublisher::close(CanBusState state, const std::string& why) {
   socket_.reset();
   now_.bus.state = state;
   now_.trouble = why;
+  drop_rest();  // now: the next set may find it open again
 }
 
 void CanPublisher::share() {

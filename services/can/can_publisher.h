@@ -26,7 +26,7 @@ struct CanStatus {
   CanBusHealth bus;
   std::uint64_t sets_sent = 0;
   std::uint64_t sets_dropped = 0;  // an older one still waited, or the next came before it was through
-  std::uint64_t sets_unheard = 0;  // made while there was no interface, or one that is bus-off
+  std::uint64_t sets_unheard = 0;  // there was no bus for them: no interface, or one that is down or bus-off
   std::uint64_t opened = 0;        // times the interface was opened
   std::string trouble;             // why there is no bus, empty when there is one
 };
@@ -56,6 +56,7 @@ class CanPublisher final : public Publisher {
   void begin_set();
   void send_rest();
   void drop_rest();
+  void note_taken();
   void share();
 
   CanConfig config_;

@@ -27,15 +27,20 @@ inline bool set_address(int fd, const char* interface, const char* address) {
   return ioctl(fd, SIOCSIFADDR, &request) == 0;
 }
 
+inline bool set_up(int fd, const char* interface, bool up) {
+  ifreq request{};
+  std::snprintf(request.ifr_name, sizeof request.ifr_name, "%s", interface);
+  if (ioctl(fd, SIOCGIFFLAGS, &request) != 0) return false;
+  const int flags = IFF_UP | IFF_RUNNING;
+  request.ifr_flags = static_cast<short>(up ? request.ifr_flags | flags : request.ifr_flags & ~flags);
+  return ioctl(fd, SIOCSIFFLAGS, &request) == 0;
+}
+
 // False when the kernel does not let us; nothing is changed then.
 inline bool enter_private_network(std::initializer_list<const char*> more_addresses) {
   if (unshare(geteuid() == 0 ? CLONE_NEWNET : CLONE_NEWUSER | CLONE_NEWNET) != 0) return false;
   const int fd = socket(AF_INET, SOCK_DGRAM, 0);
-  ifreq loopback{};
-  std::snprintf(loopback.ifr_name, sizeof loopback.ifr_name, "lo");
-  bool good = ioctl(fd, SIOCGIFFLAGS, &loopback) == 0;
-  loopback.ifr_flags = static_cast<short>(loopback.ifr_flags | IFF_UP | IFF_RUNNING);
-  good = good && ioctl(fd, SIOCSIFFLAGS, &loopback) == 0 && set_address(fd, "lo", "127.0.0.1");
+  bool good = set_up(fd, "lo", true) && set_address(fd, "lo", "127.0.0.1");
   int alias = 0;
   for (const char* address : more_addresses) {
     char name[IFNAMSIZ];

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 #include <linux/can/error.h>
+#include <linux/if_packet.h>
 
 #include <map>
 #include <thread>
 
 #include "firmware-host/autopilot/pelorus_can.h"
 #include "tests/support/can_wire.h"
+#include "tests/support/private_network.h"
 
 namespace pelorus {
 namespace {
@@ -28,6 +30,30 @@ class Bus {
   int opens = 0;
   CanSocketOptions asked;
   std::unique_ptr<test::CanWire> wire;
+};
+
+// The loopback of a private network by a packet socket, which refuses frames as a CAN socket does while its interface
+// is down; only the kernel's SocketCAN itself is not in it.
+class DownableInterface {
+ public:
+  static bool permitted() {
+    static const bool entered = test::enter_private_network({});
+    return entered;
+  }
+  void put(bool up) const { ASSERT_TRUE(test::set_up(control_.get(), "lo", up)); }
+  static CanPublisher::Open opener() {
+    return [](const CanSocketOptions&) -> Result<CanSocket> {
+      UniqueFd fd(::socket(AF_PACKET, SOCK_RAW, 0));
+      sockaddr_ll address{};
+      address.sll_family = AF_PACKET;
+      address.sll_ifindex = static_cast<int>(if_nametoindex("lo"));
+      EXPECT_EQ(::bind(fd.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+      return CanSocket::adopt(std::move(fd));
+    };
+  }
+
+ private:
+  UniqueFd control_{::socket(AF_INET, SOCK_DGRAM, 0)};
 };
 
 CanConfig quick(bool fd = false) {
@@ -186,6 +212,40 @@ TEST(CanPublisher, AnInterfacePulledOutIsOpenedAgainWhenItIsBack) {
   EXPECT_EQ(publisher.status().opened, 2U);
 }
 
+// Not "too slow a bus": CAN_SETS_DROPPED and the frames' DROPPED stay as they are.
+TEST(CanPublisher, SetsForAnInterfaceThatIsDownAreUnheard) {
+  if (!DownableInterface::permitted()) GTEST_SKIP() << "no private network: unshare() is not permitted";
+  const DownableInterface interface;
+  CanPublisher publisher(quick(), Rigid3::Identity(), std::chrono::milliseconds(100), 0, DownableInterface::opener());
+  publisher.publish(publication(1));
+  EXPECT_EQ(publisher.status().sets_sent, 1U);
+  interface.put(false);
+  for (int k = 2; k <= 4; ++k) {
+    publisher.publish(publication(k));
+    (void)publisher.tend();
+  }
+  EXPECT_EQ(publisher.status().bus.state, CanBusState::down);
+  EXPECT_EQ(publisher.status().sets_unheard, 3U);
+  interface.put(true);
+  publisher.publish(publication(5));
+  EXPECT_EQ(publisher.status().bus.state, CanBusState::active);
+  EXPECT_EQ(publisher.status().sets_sent, 2U);
+  EXPECT_EQ(publisher.status().sets_dropped, 0U);
+}
+
+TEST(CanPublisher, ASetThatIsCutOffByTheLossOfItsInterfaceIsUnheard) {
+  Bus bus;
+  CanPublisher publisher = publisher_on(bus);
+  publisher.publish(publication(1));
+  publisher.publish(publication(2));  // waits behind the first
+  bus.wire->cut();
+  (void)publisher.tend();
+  publisher.publish(publication(3));  // on a new wire
+  EXPECT_EQ(publisher.status().sets_sent, 2U);
+  EXPECT_EQ(publisher.status().sets_unheard, 1U);
+  EXPECT_EQ(publisher.status().sets_dropped, 0U);
+}
+
 TEST(CanPublisher, LooksForALostInterfaceNoMoreOftenThanAsked) {
   Bus bus;
   bus.present = false;
@@ -211,6 +271,16 @@ TEST(CanPublisher, BusOffIsReportedAndItsEndToo) {
   EXPECT_EQ(publisher.status().bus.state, CanBusState::active);
   EXPECT_EQ(publisher.status().bus.bus_offs, 1U);
   EXPECT_EQ(publisher.status().sets_sent, 1U);
+}
+
+TEST(CanPublisher, ASetThatWaitsForAControllerThatIsOffIsUnheard) {
+  Bus bus;
+  CanPublisher publisher = publisher_on(bus);
+  publisher.publish(publication(1));  // the kernel keeps it
+  bus.wire->inject(CAN_ERR_FLAG | CAN_ERR_BUSOFF);
+  for (int k = 2; k <= 5; ++k) publisher.publish(publication(k));
+  EXPECT_EQ(publisher.status().sets_unheard, 3U) << "the fifth is still in work";
+  EXPECT_EQ(publisher.status().sets_dropped, 0U);
 }
 
 TEST(CanPublisher, AsksForErrorFramesOnlyAndForFdWhenConfigured) {
