@@ -8,6 +8,7 @@
 // never waits longer than `timeout`. Errors: of open() and start() a Result that names device and cure; afterwards
 // only outcomes and counters.
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -26,7 +27,7 @@ enum class FrameOutcome : std::uint8_t {
   ended,    // recorded or synthetic frames are at their end
 };
 
-// Counters since construction; they survive reopening.
+// Counters since construction; they survive reopening. No picture is in two of frames, incomplete and skipped.
 struct CameraStatistics {
   std::uint64_t frames = 0;            // delivered by next()
   std::uint64_t incomplete = 0;        // arrived with missing or broken content
@@ -39,12 +40,24 @@ struct CameraStatistics {
   std::uint64_t resend_requests = 0;   // packets asked for again (GigE Vision)
   std::uint64_t resent_packets = 0;    // and received then
   std::uint64_t missing_packets = 0;   // never received
-  std::uint64_t underruns = 0;         // frames the transport had no buffer for
+  std::uint64_t underruns = 0;         // packets the transport had no buffer for; their pictures are in skipped
 };
 
 // The counters that cameras have in common.
 struct CameraCounters {
   Counter frames, incomplete, skipped, timeouts, lost, opened;
+  std::uint64_t unnumbered = 0;  // incomplete since the last numbered picture; of the capture thread
+
+  // A picture that came without its number: the gap before the next one will hold it too.
+  void note_unnumbered() {
+    incomplete.add();
+    ++unnumbered;
+  }
+  // So many numbers are missing before a picture that came with its own.
+  void note_gap(std::uint64_t missing) {
+    skipped.add(missing - std::min(missing, unnumbered));
+    unnumbered = 0;
+  }
 
   [[nodiscard]] CameraStatistics read() const {
     CameraStatistics s;

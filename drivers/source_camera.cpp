@@ -55,7 +55,7 @@ FrameOutcome SourceCamera::next(CameraFrame& frame, Duration timeout) {
 std::optional<FrameOutcome> SourceCamera::read_ahead() {
   const Result<bool> read = source_->next(ahead_);
   if (!read) {
-    counters_.incomplete.add();
+    counters_.note_unnumbered();
     return FrameOutcome::dropped;
   }
   if (!read.value()) {
@@ -78,7 +78,7 @@ void SourceCamera::schedule() {
   if (config_.rate_hz > 0) pause = Duration(std::llround(static_cast<double>(step) * 1e9 / config_.rate_hz));
   const bool very_first = seq_ == 0;
   if (first_of_run_ && config_.rate_hz <= 0) pause = very_first ? Duration::zero() : kUnknownPeriod;
-  if (step > 1) counters_.skipped.add(step - 1);
+  counters_.note_gap(step - 1);
   seq_ += step;
   seq_in_source_ = ahead_.seq;
   recorded_ = ahead_.capture_time;

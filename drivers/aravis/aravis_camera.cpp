@@ -196,9 +196,13 @@ FrameOutcome AravisCamera::take(ArvBuffer* buffer, CameraFrame& frame) {
   last_arrival_ = clock_.now();
   const bool complete = arv_buffer_get_status(buffer) == ARV_BUFFER_STATUS_SUCCESS;
   const guint64 id = arv_buffer_get_frame_id(buffer);
-  const std::uint64_t step = id == 0 ? 0 : frame_ids_.advance(id);  // 0: aborted before its first packet
+  if (id == 0) {  // aborted before its first packet
+    counters_.note_unnumbered();
+    return FrameOutcome::dropped;
+  }
+  const std::uint64_t step = frame_ids_.advance(id);  // 0: the same picture again
   seq_ += step;
-  if (step > 1) counters_.skipped.add(step - 1);
+  if (step > 0) counters_.note_gap(step - 1);
   if (!complete || step == 0 || !to_gray(picture_of(buffer, format_), 0, format_.width, frame.view[0])) {
     counters_.incomplete.add();
     return FrameOutcome::dropped;

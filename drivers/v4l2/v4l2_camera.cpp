@@ -55,7 +55,7 @@ FrameOutcome V4l2Camera::next(CameraFrame& frame, Duration timeout) {
     case V4l2Device::Dequeued::nothing:
       return wait_in_vain();
     case V4l2Device::Dequeued::broken:
-      counters_.incomplete.add();
+      counters_.note_unnumbered();
       return FrameOutcome::dropped;
     case V4l2Device::Dequeued::gone:
       break;
@@ -103,7 +103,7 @@ void V4l2Camera::count_exposures(std::uint32_t sequence) {
   const std::uint32_t since = sequence_known_ ? sequence - sequence_ : 1;
   const std::uint32_t step = since >= 1 && since <= kLongestGap ? since : 1;
   seq_ += step;
-  counters_.skipped.add(step - 1);
+  counters_.note_gap(step - 1);
   sequence_ = sequence;
   sequence_known_ = true;
 }

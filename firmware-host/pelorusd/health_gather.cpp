@@ -8,7 +8,7 @@ void gather_capture(const std::vector<CaptureStatus>& cameras, const SyncStatist
   CounterReport& c = report.counters;
   if (!cameras.empty()) c.pairs_captured = cameras.front().camera.frames;
   for (const CaptureStatus& status : cameras) {
-    c.dropped_in_source += status.camera.skipped + status.camera.incomplete + status.camera.underruns;
+    c.dropped_in_source += status.camera.skipped + status.camera.incomplete;
     c.dropped_ring_full += status.ring.no_free_slot;
     c.dropped_superseded += status.ring.superseded;
     c.time_jumps += status.camera.time_corrections;

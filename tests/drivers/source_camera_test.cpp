@@ -127,6 +127,19 @@ TEST(SourceCamera, ABrokenPairIsDroppedAndCounted) {
   EXPECT_EQ(camera.next(frame, 10s), FrameOutcome::dropped);
   EXPECT_EQ(camera.next(frame, 10s), FrameOutcome::frame);
   EXPECT_EQ(camera.statistics().incomplete, 1U);
+  EXPECT_EQ(camera.statistics().skipped, 0U) << "the gap is the broken pair, counted already";
+}
+
+TEST(SourceCamera, ABrokenPairInALongerGapIsCountedOnce) {
+  const CaptureClock clock;
+  SourceCamera camera(counting({0, CountingSource::kBroken, 4, 6}, 1ms), {}, clock);
+  open(camera);
+  CameraFrame frame;
+  int frames = 0;
+  for (int i = 0; i < 4; ++i) frames += camera.next(frame, 10s) == FrameOutcome::frame ? 1 : 0;
+  EXPECT_EQ(frames, 3);
+  EXPECT_EQ(camera.statistics().incomplete, 1U);
+  EXPECT_EQ(camera.statistics().skipped, 2U + 1U) << "2 and 3 of 1 to 3; 5";
 }
 
 TEST(SourceCamera, RepeatsWithGrowingCountAndTime) {
