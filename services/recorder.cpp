@@ -1,5 +1,6 @@
 #include "services/recorder.h"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 
@@ -12,7 +13,6 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kStep = std::chrono::milliseconds(100);           // between two looks at requests
 constexpr auto kRetry = std::chrono::seconds(1);                 // after a failure
 constexpr auto kLongestFinish = std::chrono::milliseconds(350);  // for what waits when recording ends
-constexpr double kLeastPicture = 1e6;                            // bytes: a disk without room for it is full
 constexpr double kRoomAgain = 1.05;                              // of the least free space: no flicker at the limit
 
 std::string utc_now() {
@@ -24,12 +24,17 @@ std::string utc_now() {
   return name;
 }
 
-// Two recordings of one second get different names.
-fs::path unused_folder(const fs::path& parent) {
+// A new folder named by this moment; two recordings of one second get different names.
+Result<fs::path> new_folder(const fs::path& parent) {
   const std::string name = utc_now();
   fs::path folder = parent / name;
-  std::error_code ignored;
-  for (int i = 2; fs::exists(folder, ignored); ++i) folder = parent / (name + "_" + std::to_string(i));
+  std::error_code failed;
+  for (int i = 2; !fs::create_directory(folder, failed); ++i) {
+    if (failed) {
+      return Error{ErrorCode::io, folder.string(), "cannot be created: " + failed.message(), "check rights and space"};
+    }
+    folder = parent / (name + "_" + std::to_string(i));
+  }
   return folder;
 }
 
@@ -64,6 +69,7 @@ Recorder::Recorder(const RecorderConfig& config, const FrameFormat& view, WriteC
                    std::function<void()> on_thread_start)
     : config_(config),
       write_calibration_(std::move(write_calibration)),
+      pair_gb_(2e-9 * view.width * view.height),
       ring_(config.queue_pairs + 2, {view.width, view.height, 2}),
       wanted_(config.at_start),
       thread_([this, prepare = std::move(on_thread_start)](const std::stop_token& stop) {
@@ -96,13 +102,9 @@ RecorderStatus Recorder::status() const {
 }
 
 void Recorder::run(const std::stop_token& stop) {
-  Clock::time_point retry_at = Clock::now();
   while (!stop.stop_requested()) {
     const bool wanted = wanted_.load(std::memory_order_relaxed);
-    if (wanted && !folder_ && Clock::now() >= retry_at) {
-      begin();
-      if (!folder_) retry_at = Clock::now() + kRetry;
-    }
+    if (wanted && !folder_ && Clock::now() >= retry_at_) begin();
     if (!wanted) finish();
     if (ring_.wait(kStep)) write_next();
   }
@@ -112,26 +114,32 @@ void Recorder::run(const std::stop_token& stop) {
 void Recorder::begin() {
   while (ring_.oldest()) {
   }  // offered while the last recording ended
-  std::error_code failed;
-  fs::create_directories(config_.folder, failed);
+  std::error_code ignored;
+  fs::create_directories(config_.folder, ignored);
   const bool full_before = state_ == RecorderState::disk_full;
-  if (!enough_space() || (full_before && free_gb_ < kRoomAgain * config_.min_free_gb)) {
-    return fail(RecorderState::disk_full, std::to_string(free_gb_) + " GB free in " + config_.folder);
+  const bool room = enough_space();
+  if (!room || (full_before && free_gb_ < kRoomAgain * std::max(config_.min_free_gb, pair_gb_))) return fail_full();
+  const Result<fs::path> folder = new_folder(config_.folder);
+  if (!folder) return fail(folder.error());
+  if (Result<> opened = open_folder(folder.value()); !opened) {
+    fs::remove_all(folder.value(), ignored);
+    return fail(opened.error());
   }
-  const fs::path folder = unused_folder(config_.folder);
-  Result<RecordingFolder> created = RecordingFolder::create(folder, config_.format);
-  if (!created) return fail(RecorderState::failed, created.error().message());
-  if (Result<> calibrated = write_calibration_(folder); !calibrated) {
-    return fail(RecorderState::failed, calibrated.error().message());
-  }
-  folder_ = std::move(created.value());
   {
     const std::scoped_lock lock(text_mutex_);
-    folder_name_ = folder.string();
+    folder_name_ = folder.value().string();
     problem_.clear();
   }
   state_ = RecorderState::recording;
   recording_ = true;
+}
+
+Result<> Recorder::open_folder(const fs::path& folder) {
+  Result<RecordingFolder> created = RecordingFolder::create(folder, config_.format);
+  if (!created) return created.error();
+  if (Result<> calibrated = write_calibration_(folder); !calibrated) return calibrated;
+  folder_ = std::move(created.value());
+  return Ok{};
 }
 
 void Recorder::write_next() {
@@ -139,24 +147,39 @@ void Recorder::write_next() {
   if (!frame || !folder_) return;
   if (!enough_space()) {
     failed_.add();
-    return fail(RecorderState::disk_full, std::to_string(free_gb_) + " GB free in " + config_.folder);
+    return fail_full();
   }
   const std::uint64_t before = folder_->bytes();
   if (Result<> written = folder_->append(frame->mid_exposure, frame->view[0].view(), frame->view[1].view()); !written) {
-    const bool full = !enough_space() || free_gb_ * 1e9 < 2.0 * kLeastPicture;
     failed_.add();
-    return fail(full ? RecorderState::disk_full : RecorderState::failed, written.error().message());
+    return fail(written.error());
   }
   written_.add();
   bytes_.add(folder_->bytes() - before);
 }
 
-void Recorder::fail(RecorderState state, const std::string& problem) {
+void Recorder::fail(const Error& error) {
+  give_up(says_disk_full(error) ? RecorderState::disk_full : RecorderState::failed, error.message());
+}
+
+void Recorder::fail_full() {
+  give_up(RecorderState::disk_full, std::to_string(free_gb_) + " GB free in " + config_.folder);
+}
+
+// Ends the recording, if there is one.
+void Recorder::give_up(RecorderState state, const std::string& problem) {
   recording_ = false;
+  retry_at_ = Clock::now() + kRetry;
+  const bool empty = folder_ && folder_->bytes() == 0;
+  if (empty) {
+    std::error_code ignored;
+    fs::remove_all(folder_->folder(), ignored);
+  }
   folder_.reset();
   state_ = state;
   const std::scoped_lock lock(text_mutex_);
   problem_ = problem;
+  if (empty) folder_name_.clear();
 }
 
 void Recorder::finish() {

@@ -1,10 +1,12 @@
 #pragma once
 // Recorder: raw pairs to disk, started and stopped at any time, on a thread of its own that never delays vision: a pair
 // is copied into a ring, and when the disk is too slow, dropped and counted. Stops by itself when the disk has less
-// free space than it must keep, and goes on in a new folder when there is room again.
+// free space than it must keep, or at a pair that cannot be written, and goes on in a new folder after a pause, when
+// there is room again. A recording without a single pair leaves no folder behind when it fails.
 // Thread-safe: start, stop, status. offer(): one thread. Offering costs two copies of a picture and no heap.
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -32,7 +34,7 @@ struct RecorderStatus {
   std::uint64_t failed = 0;   // pairs that could not be written
   std::uint64_t bytes = 0;
   double free_gb = 0;   // of the disk, when last looked at
-  std::string folder;   // of the present or last recording
+  std::string folder;   // of the present or last recording; empty when that left nothing
   std::string problem;  // why it is disk_full or failed
 };
 
@@ -63,13 +65,17 @@ class Recorder {
  private:
   void run(const std::stop_token& stop);
   void begin();
+  [[nodiscard]] Result<> open_folder(const std::filesystem::path& folder);
   void write_next();
   void finish();
-  void fail(RecorderState state, const std::string& problem);
+  void fail(const Error& error);
+  void fail_full();
+  void give_up(RecorderState state, const std::string& problem);
   [[nodiscard]] bool enough_space();
 
   RecorderConfig config_;
   WriteCalibration write_calibration_;
+  double pair_gb_;  // of a pair as it is, or as pgm
   FrameRing ring_;
   std::atomic<bool> wanted_;
   std::atomic<bool> recording_{false};  // a folder is open: offers are taken
@@ -78,7 +84,8 @@ class Recorder {
   std::uint64_t offered_ = 0;  // offer()'s thread
   Counter written_, failed_, bytes_;
   std::optional<RecordingFolder> folder_;  // recorder's thread
-  mutable std::mutex text_mutex_;          // of the two texts; taken when the state changes, never per pair
+  std::chrono::steady_clock::time_point retry_at_;
+  mutable std::mutex text_mutex_;  // of the two texts; taken when the state changes, never per pair
   std::string folder_name_;
   std::string problem_;
   std::jthread thread_;  // last: everything above is ready when it starts

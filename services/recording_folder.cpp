@@ -13,8 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error failure(const fs::path& path, const std::string& what) {
-  return {ErrorCode::io, path.string(), what + ": " + std::strerror(errno), "check rights and free space"};
+Error failure(const fs::path& path, const std::string& what, int reason = errno) {
+  return {ErrorCode::io, path.string(), what + ": " + std::strerror(reason), "check rights and free space"};
 }
 
 bool write_all(int fd, const void* bytes, std::size_t size) {
@@ -47,22 +47,25 @@ bool encode(const std::string& extension, const ImageView& picture, std::vector<
 
 }  // namespace
 
+bool says_disk_full(const Error& error) {
+  return error.detail.ends_with(std::strerror(ENOSPC)) || error.detail.ends_with(std::strerror(EDQUOT));
+}
+
 Result<RecordingFolder> RecordingFolder::create(const fs::path& folder, const std::string& extension) {
   RecordingFolder recording;
   recording.folder_ = folder;
   recording.extension_ = extension;
   constexpr std::string_view kHeader = "#timestamp [ns],filename\n";
-  for (int side = 0; side < 2; ++side) {
+  for (std::size_t side = 0; side < 2; ++side) {
     const fs::path camera = folder / "mav0" / ("cam" + std::to_string(side));
     std::error_code failed;
     fs::create_directories(camera / "data", failed);
-    if (failed) {
-      return Error{ErrorCode::io, camera.string(), "cannot be created: " + failed.message(), "check rights and space"};
-    }
+    if (failed) return failure(camera, "cannot be created", failed.value());
     recording.lists_[side] = create_file(camera / "data.csv");
     if (!recording.lists_[side] || !write_all(recording.lists_[side].get(), kHeader.data(), kHeader.size())) {
       return failure(camera / "data.csv", "cannot be written");
     }
+    recording.list_bytes_[side] = static_cast<off_t>(kHeader.size());
   }
   return recording;
 }
@@ -70,15 +73,36 @@ Result<RecordingFolder> RecordingFolder::create(const fs::path& folder, const st
 Result<> RecordingFolder::append(Timestamp time, const ImageView& left, const ImageView& right) {
   const std::string stamp = std::to_string(time.ns);
   const std::string name = stamp + "." + extension_;
-  for (int side = 0; side < 2; ++side) {
-    const fs::path file = folder_ / "mav0" / ("cam" + std::to_string(side)) / "data" / name;
-    if (Result<> written = write_picture(file, side == 0 ? left : right); !written) return written;
+  std::array<fs::path, 2> files;
+  for (std::size_t side = 0; side < 2; ++side) {
+    files[side] = folder_ / "mav0" / ("cam" + std::to_string(side)) / "data" / name;
   }
-  const std::string row = stamp + "," + name + "\n";
+  std::uint64_t bytes = 0;
+  const Result<> written = write_pair(files, stamp + "," + name + "\n", left, right, bytes);
+  if (written) {
+    bytes_ += bytes;
+    return written;
+  }
+  // What is there of the pair helps nobody.
+  for (std::size_t side = 0; side < 2; ++side) {
+    ::unlink(files[side].c_str());
+    if (::ftruncate(lists_[side].get(), list_bytes_[side]) != 0)
+      return written;  // the first failure is the one to tell
+  }
+  return written;
+}
+
+// Errors leave parts behind. `bytes`: how many it took.
+Result<> RecordingFolder::write_pair(const std::array<fs::path, 2>& files, const std::string& row,
+                                     const ImageView& left, const ImageView& right, std::uint64_t& bytes) {
+  for (std::size_t side = 0; side < 2; ++side) {
+    if (Result<> written = write_picture(files[side], side == 0 ? left : right); !written) return written;
+    bytes += encoded_.size() + row.size();
+  }
   for (const UniqueFd& list : lists_) {
     if (!write_all(list.get(), row.data(), row.size())) return failure(folder_, "a list cannot be continued");
-    bytes_ += row.size();
   }
+  for (off_t& length : list_bytes_) length += static_cast<off_t>(row.size());
   return Ok{};
 }
 
@@ -87,12 +111,7 @@ Result<> RecordingFolder::write_picture(const fs::path& file, const ImageView& p
     return Error{ErrorCode::io, file.string(), "the picture cannot be encoded", "record as png or pgm"};
   }
   const UniqueFd fd = create_file(file);
-  if (!fd || !write_all(fd.get(), encoded_.data(), encoded_.size())) {
-    const Error error = failure(file, "cannot be written");
-    ::unlink(file.c_str());  // half a picture helps nobody
-    return error;
-  }
-  bytes_ += encoded_.size();
+  if (!fd || !write_all(fd.get(), encoded_.data(), encoded_.size())) return failure(file, "cannot be written");
   return Ok{};
 }
 

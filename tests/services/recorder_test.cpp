@@ -1,7 +1,9 @@
 #include "services/recorder.h"
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/mount.h>
+#include <sys/resource.h>
 
 #include <chrono>
 #include <fstream>
@@ -59,9 +61,52 @@ class RecorderTest : public testing::Test {
     }
     recorder.offer(time_of(number), views[0].view(), views[1].view());
   }
+  // A real, small disk where recordings go; false: not permitted.
+  bool mount_disk(const std::string& size) {
+    disk_ = (folder_.path() / "recordings").string();
+    std::filesystem::create_directory(disk_);
+    mounted_ = mount("none", disk_.c_str(), "tmpfs", 0, ("size=" + size).c_str()) == 0;
+    return mounted_;
+  }
+  void TearDown() override {
+    if (mounted_) umount2(disk_.c_str(), MNT_DETACH);
+  }
+  [[nodiscard]] std::vector<std::string> recordings() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "recordings"))
+      if (entry.is_directory()) names.push_back(entry.path().filename().string());
+    return names;
+  }
+  // Offers pairs for so long, whatever the recorder does.
+  static void offer_for(Recorder& recorder, std::chrono::milliseconds time) {
+    const auto end = std::chrono::steady_clock::now() + time;
+    for (int i = 0; std::chrono::steady_clock::now() < end; ++i) {
+      offer(recorder, i);
+      std::this_thread::sleep_for(1ms);
+    }
+  }
   static Timestamp time_of(int number) { return {kFirstNs + number * 50'000'000LL}; }
 
   test::TemporaryFolder folder_;
+  std::string disk_;
+  bool mounted_ = false;
+};
+
+// No file grows beyond so many bytes while this lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    ::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit before_{};
 };
 
 TEST_F(RecorderTest, WhatItWritesReplayReads) {
@@ -152,15 +197,11 @@ TEST_F(RecorderTest, KeepsTheFreeSpaceOfTheDisk) {
   EXPECT_TRUE(reaches(*recorder, RecorderState::off));
 }
 
-// A real, small disk that fills up and is emptied again.
+// A disk that fills up and is emptied again.
 TEST_F(RecorderTest, GoesOnByItselfWhenAFullDiskHasRoomAgain) {
-  const std::string disk = (folder_.path() / "recordings").string();
-  std::filesystem::create_directory(disk);
-  if (mount("none", disk.c_str(), "tmpfs", 0, "size=4m") != 0) GTEST_SKIP() << "mounting is not permitted";
-  const std::unique_ptr<const std::string, void (*)(const std::string*)> mounted(
-      &disk, [](const std::string* at) { umount2(at->c_str(), MNT_DETACH); });
-  {
-    auto recorder = make({.at_start = true, .format = "pgm", .min_free_gb = 0.001});
+  if (!mount_disk("4m")) GTEST_SKIP() << "mounting is not permitted";
+  for (const double min_free_gb : {0.001, 0.0}) {
+    auto recorder = make({.at_start = true, .format = "pgm", .min_free_gb = min_free_gb});
     ASSERT_TRUE(reaches(*recorder, RecorderState::recording));
     for (int i = 0; i < 100'000 && recorder->status().state == RecorderState::recording; ++i) {
       offer(*recorder, i);
@@ -175,6 +216,79 @@ TEST_F(RecorderTest, GoesOnByItselfWhenAFullDiskHasRoomAgain) {
     EXPECT_TRUE(reaches(*recorder, RecorderState::recording));
     EXPECT_NE(recorder->status().folder, full);
   }
+}
+
+TEST_F(RecorderTest, ADiskThatRunsFullIsOneRecordingAndIsToldAsFull) {
+  if (!mount_disk("256k")) GTEST_SKIP() << "mounting is not permitted";
+  auto recorder = make({.at_start = true, .format = "pgm", .min_free_gb = 0});
+  ASSERT_TRUE(reaches(*recorder, RecorderState::recording));
+  offer_for(*recorder, 2500ms);
+  const RecorderStatus status = recorder->status();
+  EXPECT_EQ(status.state, RecorderState::disk_full) << summary(status);
+  EXPECT_GT(status.written, 0U);
+  EXPECT_EQ(recordings().size(), 1U);
+  const auto source = open_dataset(status.folder);
+  ASSERT_TRUE(source.ok()) << source.error().message();
+  EXPECT_EQ(source.value()->pair_count(), status.written);
+}
+
+TEST_F(RecorderTest, AFullDiskIsToldAsFullAndGetsNoFolders) {
+  if (!mount_disk("64k")) GTEST_SKIP() << "mounting is not permitted";
+  std::ofstream(disk_ + "/filler") << std::string(100'000, 'x');
+  auto recorder = make({.at_start = true, .min_free_gb = 0});
+  ASSERT_TRUE(reaches(*recorder, RecorderState::disk_full));
+  EXPECT_EQ(recordings().size(), 0U);
+  EXPECT_EQ(summary(recorder->status()).rfind("disk full: ", 0), 0U) << summary(recorder->status());
+}
+
+TEST_F(RecorderTest, ACalibrationThatCannotBeWrittenLeavesNoFolder) {
+  RecorderConfig config{.at_start = true, .min_free_gb = 0};
+  config.folder = (folder_.path() / "recordings").string();
+  const Recorder recorder(config, {kWidth, kHeight, 1}, [](const std::filesystem::path& to) -> Result<> {
+    return Error{ErrorCode::io, to.string(), "cannot be written", ""};
+  });
+  ASSERT_TRUE(reaches(recorder, RecorderState::failed));
+  EXPECT_EQ(recordings().size(), 0U);
+}
+
+// A file of the recording that cannot grow: its row is half written, in the list of the left camera only.
+TEST_F(RecorderTest, APairThatCannotBeWrittenEndsTheRecordingAtItsLastWholeRow) {
+  auto recorder = make({.at_start = true, .format = "pgm", .min_free_gb = 0, .queue_pairs = 200});
+  ASSERT_TRUE(reaches(*recorder, RecorderState::recording));
+  const std::string folder = recorder->status().folder;
+  {
+    const FileSizeLimit limit(kWidth * kHeight + 200);  // less than the list of 100 pairs
+    for (int i = 0; i < 100; ++i) offer(*recorder, i);
+    ASSERT_TRUE(reaches(*recorder, RecorderState::failed));
+  }
+  const std::uint64_t written = recorder->status().written;
+  EXPECT_GT(written, 10U);
+  EXPECT_LT(written, 100U);
+  EXPECT_EQ(recorder->status().failed, 1U);
+  recorder->stop();
+  const auto source = open_dataset(folder);
+  ASSERT_TRUE(source.ok()) << source.error().message();
+  EXPECT_EQ(source.value()->pair_count(), written);
+  SourcePair pair;
+  for (std::uint64_t i = 0; i < written; ++i) ASSERT_TRUE(source.value()->next(pair).value());
+  for (const char* camera : {"cam0", "cam1"}) {
+    const std::filesystem::path data = std::filesystem::path(folder) / "mav0" / camera / "data";
+    const auto pictures = std::distance(std::filesystem::directory_iterator(data), {});
+    EXPECT_EQ(static_cast<std::uint64_t>(pictures), written) << camera << ": nothing is left of the pair that failed";
+  }
+}
+
+// Each new recording fails at its first pair.
+TEST_F(RecorderTest, AFailedWriteIsFollowedByAPauseAndAnEmptyRecordingLeavesNoFolder) {
+  auto recorder = make({.at_start = true, .format = "pgm", .min_free_gb = 0});
+  ASSERT_TRUE(reaches(*recorder, RecorderState::recording));
+  const FileSizeLimit limit(1000);  // lists and calibration, no picture
+  offer_for(*recorder, 2500ms);
+  EXPECT_GE(recorder->status().failed, 1U);
+  EXPECT_LE(recorder->status().failed, 4U) << "a try a second";
+  EXPECT_TRUE(reaches(*recorder, RecorderState::failed));
+  EXPECT_EQ(recorder->status().written, 0U);
+  EXPECT_LE(recordings().size(), 1U) << "that of a try just begun";
 }
 
 TEST_F(RecorderTest, AFolderThatCannotBeIsAFailureWithItsReason) {
