@@ -84,6 +84,8 @@ class Camera {
   // Valid after open(): what next() will deliver.
   [[nodiscard]] virtual FrameFormat format() const = 0;
   [[nodiscard]] virtual CameraStatistics statistics() const = 0;
+  // At which frames should come, as the device or the settings say; 0 = unknown. Valid after open().
+  [[nodiscard]] virtual double rate_hz() const { return 0; }
   // One line: driver, device, format, where its time comes from. For log and doctor; valid after open().
   [[nodiscard]] virtual std::string description() const = 0;
 };

@@ -12,6 +12,12 @@ Duration duration(double seconds) { return Duration(static_cast<std::int64_t>(se
 
 }  // namespace
 
+Duration reopen_limit(double least_s, double rate_hz, Duration interval) {
+  constexpr double kPeriods = 6;
+  const double stated_s = rate_hz > 0 ? 1 / rate_hz : 0;
+  return duration(std::max(least_s, kPeriods * std::max(stated_s, seconds(interval))));
+}
+
 const char* text(CaptureState state) {
   switch (state) {
     case CaptureState::opening:
@@ -80,18 +86,23 @@ bool Capture::open_camera() {
 void Capture::stream(const std::stop_token& stop) {
   auto last = std::chrono::steady_clock::now();  // usable frame
   auto last_sign = last;                         // or an unusable one: the connection stands, a new one is no cure
+  bool any = false;
   while (!stop.stop_requested()) {
     const FrameOutcome outcome = camera_->next(ring_.slot(), kStep);
     const auto now = std::chrono::steady_clock::now();
     if (outcome == FrameOutcome::frame || outcome == FrameOutcome::dropped) last_sign = now;
     if (outcome == FrameOutcome::frame) {
+      if (any) intervals_.add(now - last);
+      any = true;
       last = now;
       note_frame();
       continue;
     }
     if (outcome == FrameOutcome::ended) return set_state(CaptureState::ended);
     if (outcome == FrameOutcome::lost) return set_state(CaptureState::lost);
-    if (now - last_sign > duration(config_.reopen_after_s)) return set_state(CaptureState::lost);
+    if (now - last_sign > reopen_limit(config_.reopen_after_s, camera_->rate_hz(), intervals_.value())) {
+      return set_state(CaptureState::lost);
+    }
     if (now - last > duration(config_.silent_after_s)) set_state(CaptureState::silent);
   }
 }

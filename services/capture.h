@@ -16,6 +16,7 @@
 #include "drivers/camera.h"
 #include "drivers/capture_clock.h"
 #include "drivers/frame_ring.h"
+#include "services/median_interval.h"
 
 namespace pelorus {
 
@@ -31,10 +32,15 @@ enum class CaptureState : std::uint8_t {
 
 struct CaptureConfig {
   double silent_after_s = 0.25;  // without a usable frame: state silent
-  double reopen_after_s = 1.5;   // without any frame: the camera is closed and opened anew
+  double reopen_after_s = 1.5;   // without any frame, at least: the camera is closed and opened anew
   double retry_first_s = 0.2;    // pause after a failed opening; doubles ...
   double retry_longest_s = 2.0;  // ... up to this
 };
+
+// How long a camera may be without any frame before it is opened anew: `least_s`, but six periods of a slow one, by the
+// rate it states (0 = unknown) and by the intervals at which its frames come (0 = unknown), whichever is slower. Twice
+// what a V4L2 stream may be silent before it is restarted in place: that is tried first.
+[[nodiscard]] Duration reopen_limit(double least_s, double rate_hz, Duration interval);
 
 struct CaptureStatus {
   CaptureState state = CaptureState::opening;
@@ -66,6 +72,7 @@ class Capture {
   std::unique_ptr<Camera> camera_;
   FrameRing& ring_;
   CaptureConfig config_;
+  MedianInterval intervals_;  // between frames of one opening; capture thread
   std::atomic<CaptureState> state_{CaptureState::opening};
   std::atomic<std::int64_t> last_frame_ns_{0};
   mutable std::mutex text_mutex_;  // of the two texts; taken at opening only, never per frame

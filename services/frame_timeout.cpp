@@ -9,7 +9,6 @@ namespace {
 // Told within five, of which the wait for the next pair and the release take up to one and a half. The half: after two
 // lost pairs the next is three periods after the last, give or take its own delay, and is no fault.
 constexpr int kHalfPeriods = 7;
-constexpr std::size_t kEnough = 3;  // intervals before the rate is believed
 constexpr Duration kUntilKnown = std::chrono::milliseconds(500);
 constexpr Duration kShortest = std::chrono::milliseconds(60);  // what an ordinary computer may keep a thread waiting
 constexpr Duration kLongest = std::chrono::seconds(10);
@@ -27,12 +26,9 @@ void FrameTimeout::learn(Timestamp capture_time, std::uint64_t step) {
     any_ = true;
     return;
   }
-  latest_[learned_++ % kIntervals] = interval;
-  if (learned_ < kEnough) return;
-  std::array<Duration, kIntervals> sorted = latest_;
-  const std::size_t count = std::min(learned_, kIntervals);
-  std::sort(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(count));
-  value_ = std::clamp(kHalfPeriods * sorted[count / 2] / 2, kShortest, kLongest);
+  intervals_.add(interval);
+  const Duration period = intervals_.value();
+  if (period > Duration::zero()) value_ = std::clamp(kHalfPeriods * period / 2, kShortest, kLongest);
 }
 
 }  // namespace pelorus

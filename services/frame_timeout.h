@@ -3,11 +3,10 @@
 // rate at which pairs really come, so that it is told within five of them at any rate. The period is the median of the
 // latest intervals: lost pairs, spells and jumps do not move it. Thread-bound; no allocation.
 
-#include <array>
-#include <cstddef>
 #include <cstdint>
 
 #include "core/base/time.h"
+#include "services/median_interval.h"
 
 namespace pelorus {
 
@@ -21,14 +20,11 @@ class FrameTimeout {
   [[nodiscard]] Duration value() const { return value_; }
 
  private:
-  static constexpr std::size_t kIntervals = 9;
-
   bool given_;
   Duration value_;
   bool any_ = false;
   Timestamp last_;
-  std::array<Duration, kIntervals> latest_{};
-  std::size_t learned_ = 0;
+  MedianInterval intervals_;
 };
 
 }  // namespace pelorus

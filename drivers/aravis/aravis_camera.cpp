@@ -143,6 +143,8 @@ Result<> AravisCamera::read_back() {
   }
   const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());
   if (!failure) session_->exposure = Duration(std::llround(exposure_us * 1000));
+  const double rate_hz = arv_camera_get_frame_rate(camera, failure.slot());
+  rate_hz_ = config_.rate_hz > 0 || failure ? config_.rate_hz : rate_hz;
   const std::string ptp = config_.clock == DeviceClockKind::ptp ? ptp_status(camera) : "";
   description_ = "GigE Vision " + config_.device + ", " + std::to_string(format_.width) + "x" +
                  std::to_string(format_.height) + " " + std::string(text(pixels)) + ", packets of " +

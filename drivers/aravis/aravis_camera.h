@@ -30,6 +30,7 @@ class AravisCamera final : public Camera {
   void stop() override;
   [[nodiscard]] FrameFormat format() const override { return format_; }
   [[nodiscard]] CameraStatistics statistics() const override;
+  [[nodiscard]] double rate_hz() const override { return rate_hz_; }
   [[nodiscard]] std::string description() const override { return description_; }
 
  private:
@@ -49,6 +50,7 @@ class AravisCamera final : public Camera {
   std::unique_ptr<Session> session_;
   FrameFormat format_;
   std::string description_;
+  double rate_hz_ = 0;
   DeviceClock device_clock_;
   FrameIdUnwrapper frame_ids_;
   std::uint64_t seq_ = 0;

@@ -112,8 +112,7 @@ void V4l2Camera::count_exposures(std::uint32_t sequence) {
 FrameOutcome V4l2Camera::wait_in_vain() {
   counters_.timeouts.add();
   const auto now = std::chrono::steady_clock::now();
-  const double rate_hz = device_.format().rate_hz > 0 ? device_.format().rate_hz : config_.rate_hz;
-  if (now - last_buffer_ < dequeue_limit(config_.watchdog_s, rate_hz)) return FrameOutcome::timeout;
+  if (now - last_buffer_ < dequeue_limit(config_.watchdog_s, rate_hz())) return FrameOutcome::timeout;
   restarts_.add();
   device_.stop();
   if (!device_.start(config_.buffers)) return give_up();
@@ -127,6 +126,8 @@ FrameOutcome V4l2Camera::give_up() {
   device_.close();
   return FrameOutcome::lost;
 }
+
+double V4l2Camera::rate_hz() const { return device_.format().rate_hz > 0 ? device_.format().rate_hz : config_.rate_hz; }
 
 CameraStatistics V4l2Camera::statistics() const {
   CameraStatistics s = counters_.read();

@@ -26,6 +26,7 @@ class V4l2Camera final : public Camera {
   void stop() override { device_.close(); }
   [[nodiscard]] FrameFormat format() const override;
   [[nodiscard]] CameraStatistics statistics() const override;
+  [[nodiscard]] double rate_hz() const override;
   [[nodiscard]] std::string description() const override { return description_; }
 
  private:

@@ -12,6 +12,7 @@ namespace pelorus {
 namespace {
 
 constexpr int kRingSlots = 8;
+constexpr double kNever_s = 1e9;
 
 }  // namespace
 
@@ -47,6 +48,7 @@ Result<> StereoHead::prepare_source(const SourceConfig& source, const CaptureClo
   const PaceConfig pace{source.rate_hz, source.repeat};
   const auto open = [path = source.path, calibration = source.calibration] { return open_source(path, calibration); };
   cameras_.push_back(std::make_unique<SourceCamera>(open, pace, clock));
+  capture_config_.reopen_after_s = kNever_s;  // silence is the recording's own: opened anew it would start anew
   return Ok{};
 }
 

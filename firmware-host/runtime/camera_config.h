@@ -35,7 +35,7 @@ struct CameraConfig {
   int frame_retention_ms = 30;  // GigE Vision: how long a frame waits for its packets
   int buffers = 8;              // between driver and program, each one frame
   int ring_slots = 8;           // frames between capture and vision; at least 8 for two cameras
-  double reopen_after_s = 1.5;  // without a frame: the camera is closed and opened anew
+  double reopen_after_s = 1.5;  // without a frame, at least (reopen_limit()): the camera is closed and opened anew
 };
 
 [[nodiscard]] StereoSyncConfig sync_config(const CameraConfig& config);

@@ -17,6 +17,8 @@ struct Device {
   std::atomic<bool> delivers{true};
   std::atomic<bool> spoils{false};
   std::atomic<int> frames_left{1'000'000};
+  std::atomic<double> rate_hz{0};
+  std::atomic<bool> single{false};  // one frame although it does not deliver
 };
 
 class ScriptedCamera final : public Camera {
@@ -31,8 +33,8 @@ class ScriptedCamera final : public Camera {
   FrameOutcome next(CameraFrame& frame, Duration timeout) override {
     if (device_.frames_left == 0) return FrameOutcome::ended;
     if (!device_.present) return FrameOutcome::lost;
-    std::this_thread::sleep_for(device_.delivers ? Duration(1ms) : timeout);
-    if (!device_.delivers) return FrameOutcome::timeout;
+    std::this_thread::sleep_for(device_.delivers ? Duration(1ms) : std::min<Duration>(timeout, 5ms));
+    if (!device_.delivers && !device_.single.exchange(false)) return FrameOutcome::timeout;
     if (device_.spoils) return FrameOutcome::dropped;
     --device_.frames_left;
     frames_.add();
@@ -48,6 +50,7 @@ class ScriptedCamera final : public Camera {
     s.opened = opened_.value();
     return s;
   }
+  double rate_hz() const override { return device_.rate_hz; }
   std::string description() const override { return "scripted"; }
 
  private:
@@ -116,6 +119,46 @@ TEST_F(CaptureTest, SpoiltFramesAreSilenceButNoReasonToOpenAnew) {
   device_.spoils = false;
   EXPECT_TRUE(reaches(CaptureState::streaming));
   EXPECT_EQ(capture_.status().camera.opened, 1U);
+}
+
+TEST_F(CaptureTest, ASlowCameraIsNotOpenedAnewBeforeItsNextFramesAreDue) {
+  device_.rate_hz = 1;
+  device_.delivers = false;
+  EXPECT_TRUE(reaches(CaptureState::silent));
+  std::this_thread::sleep_for(900ms);  // three times reopen_after_s, less than a period
+  device_.delivers = true;
+  EXPECT_TRUE(reaches(CaptureState::streaming));
+  EXPECT_EQ(capture_.status().camera.opened, 1U);
+}
+
+TEST(Capture, ACameraOfUnknownRateIsJudgedByTheOneItHas) {
+  Device device;
+  device.delivers = false;
+  FrameRing ring(4, {8, 4, 1});
+  const Capture capture(std::make_unique<ScriptedCamera>(device), ring, {.reopen_after_s = 1.0});
+  const auto deliver_one = [&] {
+    const std::uint64_t before = capture.status().camera.frames;
+    device.single = true;
+    for (int i = 0; i < 2000 && capture.status().camera.frames == before; ++i) std::this_thread::sleep_for(1ms);
+  };
+  // Every 0.3 s, and then none for longer than reopen_after_s.
+  for (int i = 0; i < 5; ++i) {
+    deliver_one();
+    std::this_thread::sleep_for(300ms);
+  }
+  ASSERT_EQ(capture.status().camera.opened, 1U);
+  std::this_thread::sleep_for(1s);
+  deliver_one();
+  EXPECT_EQ(capture.status().camera.opened, 1U);
+}
+
+TEST(ReopenLimit, IsSixPeriodsOfASlowCameraAndTheLeastOfAFastOne) {
+  EXPECT_EQ(reopen_limit(1.5, 20, 50ms), 1500ms);
+  EXPECT_EQ(reopen_limit(1.5, 0, Duration::zero()), 1500ms);
+  EXPECT_EQ(reopen_limit(1.5, 0.5, Duration::zero()), 12s) << "as it states";
+  EXPECT_EQ(reopen_limit(1.5, 0, 2s), 12s) << "as it does";
+  EXPECT_EQ(reopen_limit(1.5, 5, 1s), 6s) << "slower than it states, as automatic exposure makes it in the dark";
+  EXPECT_EQ(reopen_limit(30, 1, 1s), 30s);
 }
 
 TEST_F(CaptureTest, EndsWithRecordedFrames) {
