@@ -47,8 +47,12 @@ SyncStatistics StereoSync::statistics() const {
   s.time_reversed = time_reversed_.value();
   s.realigned = realigned_.value();
   s.last_error_ns = last_error_ns_.load(std::memory_order_relaxed);
-  s.worst_error_ns = worst_error_ns_.load(std::memory_order_relaxed);
   return s;
+}
+
+std::optional<std::int64_t> StereoSync::take_worst_error_ns() {
+  const std::int64_t worst = worst_error_ns_.exchange(kNoPair, std::memory_order_relaxed);
+  return worst == kNoPair ? std::nullopt : std::optional(worst);
 }
 
 void StereoSync::Side::drop_oldest() {
@@ -176,8 +180,10 @@ void StereoSync::note_delivered(const StereoPair& pair) {
   pairs_.add();
   const std::int64_t error = pair.sync_error.count();
   last_error_ns_.store(error, std::memory_order_relaxed);
-  if (std::abs(error) > std::abs(worst_error_ns_.load(std::memory_order_relaxed))) {
-    worst_error_ns_.store(error, std::memory_order_relaxed);
+  // Tried again when the reader takes it in between: then this pair belongs to the next report.
+  std::int64_t worst = worst_error_ns_.load(std::memory_order_relaxed);
+  while ((worst == kNoPair || std::abs(error) > std::abs(worst)) &&
+         !worst_error_ns_.compare_exchange_weak(worst, error, std::memory_order_relaxed)) {
   }
 }
 

@@ -6,11 +6,14 @@
 // counts of exposures, where the offset between the two counts is found by time once and again when nothing pairs;
 // the times must still agree within the tolerance. Frames of one camera arrive in order.
 //
-// Thread-bound to the consumer of the rings; statistics() for all. No heap, no lock; O(frames waiting).
+// Thread-bound to the consumer of the rings; statistics() and take_worst_error_ns() for all. No heap, no lock; O(frames
+// waiting).
 
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
+#include <optional>
 
 #include "core/base/counter.h"
 #include "drivers/frame_ring.h"
@@ -33,7 +36,6 @@ struct SyncStatistics {
   std::uint64_t time_reversed = 0;     // frames thrown away because their camera's time went back behind them
   std::uint64_t realigned = 0;         // times the offset between the counts was found anew
   std::int64_t last_error_ns = 0;      // right minus left mid-exposure of the pair delivered last
-  std::int64_t worst_error_ns = 0;     // largest magnitude so far
 };
 
 // A pair and the permission to read it. Empty when default-made.
@@ -61,8 +63,13 @@ class StereoSync {
   // The newest pair that was not delivered before; waits for one at most `timeout`. Empty: none came.
   [[nodiscard]] StereoPair newest(Duration timeout);
   [[nodiscard]] SyncStatistics statistics() const;
+  // Right minus left mid-exposure, the largest in magnitude of the pairs delivered since it was taken last; none when
+  // there was no pair.
+  [[nodiscard]] std::optional<std::int64_t> take_worst_error_ns();
 
  private:
+  static constexpr std::int64_t kNoPair = std::numeric_limits<std::int64_t>::min();
+
   // Frames of one camera, oldest first.
   struct Side {
     FrameRing* ring = nullptr;
@@ -92,7 +99,7 @@ class StereoSync {
   int unmatched_in_row_ = 0;
   Counter pairs_, superseded_, out_of_tolerance_, time_reversed_, realigned_;
   std::atomic<std::int64_t> last_error_ns_{0};
-  std::atomic<std::int64_t> worst_error_ns_{0};
+  std::atomic<std::int64_t> worst_error_ns_{kNoPair};
 };
 
 }  // namespace pelorus

@@ -4,7 +4,8 @@
 
 namespace pelorus {
 
-void gather_capture(const std::vector<CaptureStatus>& cameras, const SyncStatistics& sync, HealthReport& report) {
+void gather_capture(const std::vector<CaptureStatus>& cameras, const SyncStatistics& sync,
+                    std::optional<std::int64_t> worst_sync_error_ns, HealthReport& report) {
   CounterReport& c = report.counters;
   if (!cameras.empty()) c.pairs_captured = cameras.front().camera.frames;
   for (const CaptureStatus& status : cameras) {
@@ -19,7 +20,9 @@ void gather_capture(const std::vector<CaptureStatus>& cameras, const SyncStatist
   }
   c.dropped_superseded += sync.superseded;
   c.dropped_unpaired = sync.unpaired_left + sync.unpaired_right + sync.out_of_tolerance + sync.time_reversed;
-  if (cameras.size() > 1) report.picture.sync_error_ms = 1e-6 * static_cast<double>(sync.worst_error_ns);
+  if (cameras.size() > 1 && worst_sync_error_ns) {
+    report.picture.sync_error_ms = 1e-6 * static_cast<double>(*worst_sync_error_ns);
+  }
 }
 
 void gather_vision(const VisionStatus& vision, HealthReport& report) {
@@ -51,7 +54,8 @@ void gather_recorder(const RecorderStatus& recorder, HealthReport& report) {
 }
 
 void gather_service(const ServiceThreads& service, HealthReport& report) {
-  gather_capture(service.head->status(), service.head->sync().statistics(), report);
+  StereoSync& sync = service.head->sync();
+  gather_capture(service.head->status(), sync.statistics(), sync.take_worst_error_ns(), report);
   if (service.vision) gather_vision(service.vision->status(), report);
   report.counters.results_dropped = service.desk.results.dropped();
   report.counters.previews_skipped = service.preview->skipped();

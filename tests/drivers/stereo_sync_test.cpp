@@ -47,6 +47,23 @@ TEST_F(StereoSyncTest, PairsFramesOfOneExposureAndMeasuresTheirError) {
   EXPECT_FALSE(by_time_.newest(0ms));
 }
 
+// One outlier does not hide what comes after it.
+TEST_F(StereoSyncTest, TheWorstErrorIsThatSinceItWasTakenLast) {
+  EXPECT_FALSE(by_time_.take_worst_error_ns());
+  const std::int64_t errors_ns[] = {300'000, -1'500'000, 200'000};
+  for (std::uint64_t seq = 1; seq <= 3; ++seq) {
+    left(seq);
+    right(seq, errors_ns[seq - 1]);
+    EXPECT_TRUE(by_time_.newest(0ms));
+  }
+  EXPECT_EQ(by_time_.take_worst_error_ns(), -1'500'000);
+  left(4);
+  right(4, 400'000);
+  EXPECT_TRUE(by_time_.newest(0ms));
+  EXPECT_EQ(by_time_.take_worst_error_ns(), 400'000);
+  EXPECT_FALSE(by_time_.take_worst_error_ns()) << "no pair since";
+}
+
 TEST_F(StereoSyncTest, GivesTheNewestPairAndCountsTheOthers) {
   for (std::uint64_t seq = 1; seq <= 6; ++seq) {
     left(seq);

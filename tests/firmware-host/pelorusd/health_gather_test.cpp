@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace pelorus {
 namespace {
 
@@ -40,7 +42,7 @@ CaptureStatus right_camera() {
 
 TEST(HealthGather, CountersOfAllCamerasAreAdded) {
   HealthReport report;
-  gather_capture({left_camera(), right_camera()}, {}, report);
+  gather_capture({left_camera(), right_camera()}, {}, {}, report);
   const CounterReport& c = report.counters;
   EXPECT_EQ(c.pairs_captured, 1000U) << "of the left one, which gives a pair its number";
   EXPECT_EQ(c.camera_reopens, 3U + 10U + 100U) << "the first opening is none";
@@ -55,7 +57,7 @@ TEST(HealthGather, CountersOfAllCamerasAreAdded) {
 
 TEST(HealthGather, ACameraThatWasNeverOpenedWasNotOpenedAnew) {
   HealthReport report;
-  gather_capture({CaptureStatus{}, CaptureStatus{}}, {}, report);
+  gather_capture({CaptureStatus{}, CaptureStatus{}}, {}, {}, report);
   EXPECT_EQ(report.counters.camera_reopens, 0U);
 }
 
@@ -66,12 +68,17 @@ TEST(HealthGather, WhatPairingLosesIsAddedToWhatTheRingsLose) {
   sync.unpaired_right = 20;
   sync.out_of_tolerance = 300;
   sync.time_reversed = 4000;
-  sync.worst_error_ns = 1'500'000;
   HealthReport report;
-  gather_capture({left_camera(), right_camera()}, sync, report);
+  gather_capture({left_camera(), right_camera()}, sync, -1'500'000, report);
   EXPECT_EQ(report.counters.dropped_superseded, 1153U);
   EXPECT_EQ(report.counters.dropped_unpaired, 4321U);
-  EXPECT_DOUBLE_EQ(report.picture.sync_error_ms, 1.5);
+  EXPECT_DOUBLE_EQ(report.picture.sync_error_ms, -1.5);
+}
+
+TEST(HealthGather, WithoutAPairSinceTheLastReportTheSyncErrorIsUnknown) {
+  HealthReport report;
+  gather_capture({left_camera(), right_camera()}, {}, {}, report);
+  EXPECT_TRUE(std::isnan(report.picture.sync_error_ms));
 }
 
 }  // namespace
