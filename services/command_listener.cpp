@@ -7,6 +7,8 @@
 #include <pelorus/vis_command_ack_t.hpp>
 #include <pelorus/vis_command_t.hpp>
 
+#include "services/lcm_messages.h"
+
 #include "services/lcm_link.h"
 
 namespace pelorus {
@@ -16,15 +18,11 @@ constexpr int kWait_ms = 100;
 constexpr auto kRetry = std::chrono::seconds(1);
 constexpr auto kLongestEnd = std::chrono::milliseconds(300);
 
-std::int64_t now_us() {
-  const auto now = std::chrono::system_clock::now().time_since_epoch();
-  return std::chrono::duration_cast<std::chrono::microseconds>(now).count();
-}
-
 }  // namespace
 
 struct CommandListener::Shared {
   LcmConfig config;
+  Now now;
   std::mutex mutex;  // of the rest; per command and at the end only
   std::condition_variable change;
   Handler handler;  // empty once the listener has ended
@@ -47,8 +45,11 @@ namespace {
 // One connection with its subscription.
 class Session {
  public:
-  Session(const LcmConfig& config, CommandListener::Handler handler)
-      : lcm_(config.url), handler_(std::move(handler)), ack_channel_(config.vehicle + ".VIS_COMMAND_ACK") {
+  Session(const LcmConfig& config, CommandListener::Handler handler, CommandListener::Now now)
+      : lcm_(config.url),
+        handler_(std::move(handler)),
+        now_(std::move(now)),
+        ack_channel_(config.vehicle + ".VIS_COMMAND_ACK") {
     if (!lcm_.good()) return;
     subscription_ = lcm_.subscribe(config.vehicle + ".VIS_COMMAND", &Session::take, this);
   }
@@ -62,7 +63,7 @@ class Session {
   void take(const lcm::ReceiveBuffer*, const std::string&, const vis_command_t* command) {
     const CommandAnswer answer = handler_(command->command, command->argument);
     vis_command_ack_t ack{};
-    ack.utime = now_us();
+    ack.utime = utime_of(now_());
     ack.id = command->id;
     ack.command = command->command;
     ack.accepted = answer.accepted;
@@ -72,14 +73,17 @@ class Session {
 
   lcm::LCM lcm_;
   CommandListener::Handler handler_;
+  CommandListener::Now now_;
   std::string ack_channel_;
   lcm::Subscription* subscription_ = nullptr;
 };
 
 }  // namespace
 
-CommandListener::CommandListener(const LcmConfig& config, Handler handler) : shared_(std::make_shared<Shared>()) {
+CommandListener::CommandListener(const LcmConfig& config, Handler handler, Now now)
+    : shared_(std::make_shared<Shared>()) {
   shared_->config = config;
+  shared_->now = std::move(now);
   shared_->handler = std::move(handler);
   thread_ = std::thread([shared = shared_] { shared->run(); });
 }
@@ -97,9 +101,9 @@ CommandListener::~CommandListener() {
 void CommandListener::Shared::run() {
   while (!asked_to_stop()) {
     if (lcm_can_open(config.url)) {
-      Session session(config, [this](const std::string& command, const std::string& argument) {
-        return answer(command, argument);
-      });
+      Session session(
+          config, [this](const std::string& command, const std::string& argument) { return answer(command, argument); },
+          now);
       while (session.good() && !asked_to_stop() && session.wait()) {
       }
     }

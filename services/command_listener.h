@@ -9,6 +9,7 @@
 #include <string>
 #include <thread>
 
+#include "core/base/time.h"
 #include "services/service_settings.h"
 
 namespace pelorus {
@@ -21,7 +22,9 @@ struct CommandAnswer {
 class CommandListener {
  public:
   using Handler = std::function<CommandAnswer(const std::string& command, const std::string& argument)>;
-  CommandListener(const LcmConfig& config, Handler handler);
+  // The clock of all messages; called on the listener's thread, which may outlive the listener.
+  using Now = std::function<Timestamp()>;
+  CommandListener(const LcmConfig& config, Handler handler, Now now);
   ~CommandListener();
   CommandListener(const CommandListener&) = delete;
   CommandListener& operator=(const CommandListener&) = delete;

@@ -85,6 +85,7 @@ struct HealthReport {
   CounterReport counters;
   PictureReport picture;
   HostReport host;
+  double wall_step_s = kUnknown;  // of the wall clock against the clock of all times since the start
   std::string version;
   std::string recorder_text;
   std::string can_text;

@@ -210,6 +210,7 @@ vis_health_t health_message(const HealthReport& report) {
   m.memory_mb = report.host.memory_mb;
   m.temperature_degc = report.host.temperature_degc;
   m.disk_free_gb = report.host.disk_free_gb;
+  m.wall_step_s = report.wall_step_s;
   m.recorder_text = report.recorder_text;
   m.can_text = report.can_text;
   m.privileges_text = report.privileges_text;

@@ -10,6 +10,7 @@
 #include "firmware-host/pelorusd/health_gather.h"
 #include "firmware-host/pelorusd/progress_watch.h"
 #include "firmware-host/pelorusd/service_threads.h"
+#include "firmware-host/pelorusd/wall_step_watch.h"
 #include "firmware-host/runtime/service_manager.h"
 #include "services/health.h"
 #include "services/host_facts.h"
@@ -61,6 +62,7 @@ struct App::Parts {
   Health health;
   HostFacts host{""};
   ProgressWatch progress{kLongestStandstill};
+  WallStepWatch wall_step;
   Timestamp started;
   std::uint64_t reports = 0;
   Clock::time_point next_health;
@@ -216,6 +218,9 @@ void App::send_report(HealthReport& report, Timestamp now) {
   report.seq = ++p.reports;
   report.uptime_s = seconds(now - p.started);
   report.host = p.host_report;
+  const Duration wall_step = p.service->clock.wall_step();
+  report.wall_step_s = seconds(wall_step);
+  if (const auto warning = p.wall_step.look(wall_step)) p.log.line(LogLevel::warning, *warning);
   p.outputs = outputs_state(*p.service);
   gather_service(*p.service, report);
   report.version = PELORUS_VERSION;

@@ -109,7 +109,8 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime, LogSink& log
   head->start(prepared("capture", head->is_live() ? ThreadClass::fifo_high : ThreadClass::normal));
   if (config.lcm.enabled && config.lcm.commands) {
     commands = std::make_unique<CommandListener>(
-        config.lcm, [this](const std::string& command, const std::string&) { return obey(command); });
+        config.lcm, [this](const std::string& command, const std::string&) { return obey(command); },
+        [clock = clock] { return clock.now(); });
   }
 }
 

@@ -71,7 +71,7 @@ def health(data):
     offset += len(HEALTH_COUNTERS) * 8
     (counters["utime"],) = struct.unpack_from(">q", data, 8)
     (counters["sync_error_ms"],) = struct.unpack_from(">d", data, offset)
-    offset += 9 * 8
+    offset += 10 * 8
     for name in HEALTH_TEXTS:
         counters[name], offset = text(data, offset)
     return counters

@@ -18,10 +18,11 @@ TEST(CommandListener, AnswersEachCommandWithItsId) {
   config.vehicle = "TEST";
   test::Listener<vis_command_ack_t> answers(config.url, "TEST.VIS_COMMAND_ACK");
   std::atomic<int> asked{0};
-  const CommandListener listener(config, [&](const std::string& command, const std::string&) {
+  const auto answer = [&](const std::string& command, const std::string&) {
     ++asked;
     return CommandAnswer{command == "reset", command == "reset" ? "started anew" : "unknown command"};
-  });
+  };
+  const CommandListener listener(config, answer, [] { return Timestamp{1'600'000'000'123'456'789}; });
   lcm::LCM sender(config.url);
   vis_command_t command{};
   // The listener subscribes in its own time: asked again until it answers.
@@ -35,6 +36,7 @@ TEST(CommandListener, AnswersEachCommandWithItsId) {
   EXPECT_EQ(answers.messages[0].id, 41);
   EXPECT_TRUE(answers.messages[0].accepted);
   EXPECT_EQ(answers.messages[0].command, "reset");
+  EXPECT_EQ(answers.messages[0].utime, 1'600'000'000'123'456) << "of the clock it was given, as all messages";
   const std::size_t before = answers.messages.size();
   command.id = 42;
   command.command = "dance";

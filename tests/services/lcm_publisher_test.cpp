@@ -157,6 +157,8 @@ TEST_F(LcmBus, HealthAndPictureArrive) {
   report.timing.latency_p99_ms = 101.5;
   report.state = VisionState::camera_fault;
   report.reason = StateReason::no_pictures;
+  report.host.disk_free_gb = 78.5;
+  report.wall_step_s = -3600.25;
   report.config_hash = "0123456789abcdef";
   report.privileges_text = "real time, memory locked, 2 threads pinned";
   std::uint64_t number = 100;
@@ -183,6 +185,8 @@ TEST_F(LcmBus, HealthAndPictureArrive) {
   EXPECT_EQ(health.messages[0].reason_text, "no pictures");
   EXPECT_EQ(health.messages[0].config_hash, "0123456789abcdef");
   EXPECT_TRUE(std::isnan(health.messages[0].temperature_degc));
+  EXPECT_DOUBLE_EQ(health.messages[0].disk_free_gb, 78.5);
+  EXPECT_DOUBLE_EQ(health.messages[0].wall_step_s, -3600.25);
   const vis_health_t& got = health.messages[0];
   EXPECT_EQ(got.privileges_text, report.privileges_text);
   const std::vector<std::int64_t> counters{

@@ -123,6 +123,7 @@ std::string health_json(const BusView& view, ArrivalTime now) {
       .number("memory_mb", m.memory_mb)
       .number("temperature_degc", m.temperature_degc)
       .number("disk_free_gb", m.disk_free_gb)
+      .number("wall_step_s", m.wall_step_s)
       .text("recorder", m.recorder_text)
       .text("can", m.can_text)
       .text("privileges", m.privileges_text)

@@ -58,6 +58,7 @@ BusView small_view() {
   health.temperature_degc = std::nan("");
   health.dropped_superseded = 12;
   health.disk_free_gb = 78.5;
+  health.wall_step_s = 0.25;
   health.can_text = "can0 active, 12 sets, 0 dropped, 0 error frames, 0 bus-offs";
   health.recorder_text = "off";
   health.privileges_text = "real time, memory not locked: the limit is 64 kB, 2 threads pinned";
@@ -98,6 +99,10 @@ TEST(StatusPage, TellsStateRatesDropsBusAndDisk) {
   EXPECT_TRUE(says(line_of(view, "CAN"), "can0 active, 12 sets")) << line_of(view, "CAN");
   EXPECT_TRUE(says(line_of(view, "DISK"), "78.5 GB free")) << line_of(view, "DISK");
   EXPECT_TRUE(says(line_of(view, "GRANTED"), "memory not locked: the limit is 64 kB")) << line_of(view, "GRANTED");
+}
+
+TEST(StatusPage, AWallClockThatWasSetIsInTheJson) {
+  EXPECT_EQ(YAML::Load(status_json(small_view(), kNow))["health"]["wall_step_s"].as<double>(), 0.25);
 }
 
 TEST(StatusPage, EachFaultIsToldWithItsOwnCountAndWhatIsNew) {
