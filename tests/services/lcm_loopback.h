@@ -79,9 +79,9 @@ inline Publication rich_publication() {
     o.phase = k == 0 ? ObjectPhase::confirmed : ObjectPhase::coasting;
     o.motion_measured = k == 0;
     o.T_world_obj = se3_exp(0.5 * (k + 1) * xi);
-    o.cov_T_world_obj = 2.0 * r.cov_T_world_cam;
+    o.cov_T_world_obj = (2.0 + k) * r.cov_T_world_cam;
     o.M_world = se3_exp(0.02 * (k + 1) * xi);
-    o.cov_M_world = 3.0 * r.cov_T_curr_prev;
+    o.cov_M_world = (5.0 + k) * r.cov_T_curr_prev;
     o.points = 20 + k;
     o.first_seen = Timestamp{r.capture_time.ns - 3'000'000'000};
     o.last_seen = Timestamp{r.capture_time.ns - k * 100'000'000};

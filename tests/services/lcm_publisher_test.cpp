@@ -40,6 +40,11 @@ Rigid3 transform(const double pos[3], const double q[4]) {
   return T;
 }
 
+// Row by row, as the wire has it.
+Matrix6d covariance(const double values[36]) {
+  return Eigen::Map<const Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(values);
+}
+
 template <std::size_t N>
 bool all_nan(const double (&values)[N]) {
   return std::all_of(values, values + N, [](double value) { return std::isnan(value); });
@@ -73,6 +78,12 @@ TEST_F(LcmBus, OdometryArrivesWithEveryFieldAsPublished) {
   EXPECT_TRUE(T_prev_curr.isApprox(frames.pose_of_body(sent.result.T_curr_prev.inverse()), 1e-12));
   const Matrix6d cov = frames.covariance(sent.result.cov_T_world_cam);
   for (int i = 0; i < 36; ++i) EXPECT_DOUBLE_EQ(got.cov_pose[i], cov(i / 6, i % 6));
+  // Of the body's step: H = T_curr_prev inverted (its perturbation goes over by Ad(T_prev_curr)), then carried to the
+  // body. The velocity is the step by its time.
+  const Matrix6d Ad = adjoint(sent.result.T_curr_prev.inverse());
+  const Matrix6d cov_step = frames.covariance(Ad * sent.result.cov_T_curr_prev * Ad.transpose());
+  EXPECT_TRUE(covariance(got.cov_step).isApprox(cov_step, 1e-12));
+  EXPECT_TRUE(covariance(got.cov_velocity).isApprox(cov_step / (0.05 * 0.05), 1e-12));
 }
 
 TEST_F(LcmBus, WithoutAPoseNumbersAreUnknownAndNoTrackIsTold) {
@@ -145,6 +156,12 @@ TEST_F(LcmBus, TracksArriveAndTheirMotionCarriesTheCentroid) {
   EXPECT_NEAR(track.centroid_body_m[0], 4.0 + 0.5, 1e-9);
   EXPECT_NEAR(track.centroid_body_m[1], 0.3 - 0.1, 1e-9);
   EXPECT_NEAR(track.range_m, std::sqrt(16 + 0.09 + 0.04), 1e-9);
+  const BodyFrames frames(T_body_cam());
+  for (std::size_t k = 0; k < 2; ++k) {
+    const ObjectState& object = sent.result.objects[k];
+    EXPECT_TRUE(covariance(got.tracks[k].cov_pose).isApprox(frames.covariance(object.cov_T_world_obj), 1e-12));
+    EXPECT_TRUE(covariance(got.tracks[k].cov_step).isApprox(frames.covariance(object.cov_M_world), 1e-12));
+  }
 }
 
 TEST_F(LcmBus, HealthAndPictureArrive) {
