@@ -37,10 +37,12 @@ std::string interface_of(const in_addr& local) {
 
 std::optional<LcmAddress> parse_lcm_url(const std::string& url) {
   constexpr const char* kScheme = "udpm://";
-  if (!url.starts_with(kScheme)) return std::nullopt;
-  const std::string rest = url.substr(std::strlen(kScheme));
+  constexpr const char* kDefaultPlace = "239.255.76.67:7667";  // LCM's own
+  if (!url.empty() && !url.starts_with(kScheme)) return std::nullopt;
+  const std::string rest = url.empty() ? "" : url.substr(std::strlen(kScheme));
   const std::size_t question = rest.find('?');
-  const std::string place = rest.substr(0, question);
+  std::string place = rest.substr(0, question);
+  if (place.empty()) place = kDefaultPlace;
   const std::size_t colon = place.find(':');
   if (colon == std::string::npos) return std::nullopt;
   LcmAddress address{place.substr(0, colon), whole_number(place.substr(colon + 1)).value_or(0), 0};

@@ -12,7 +12,7 @@ struct LcmAddress {
   int port = 0;
   int ttl = 0;  // hops: 0 = this computer, 1 = this network
 };
-// Of "udpm://group:port?ttl=n"; none for anything else.
+// Of "udpm://group:port?ttl=n", group and port together being optional; none for anything else.
 [[nodiscard]] std::optional<LcmAddress> parse_lcm_url(const std::string& url);
 
 struct MulticastRoute {

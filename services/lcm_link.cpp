@@ -22,6 +22,7 @@ lcm::LCM* LcmLink::connection() {
   const Clock::time_point now = Clock::now();
   if (now < next_try_) return nullptr;
   next_try_ = now + kRetry;
+  attempts_.add();
   if (!lcm_can_open(url_)) return nullptr;
   auto fresh = std::make_unique<lcm::LCM>(url_);
   if (!fresh->good()) return nullptr;
@@ -43,8 +44,10 @@ void LcmLink::note(bool success) {
   const Clock::time_point now = Clock::now();
   if (!failing_) failing_since_ = now;
   failing_ = true;
+  if (now - failing_since_ < kRetry || now < next_try_) return;
+  next_try_ = now + kRetry;
   // Without a route a new connection would be worse than this one, which speaks again with the route.
-  if (now - failing_since_ < kRetry || !lcm_can_open(url_)) return;
+  if (!lcm_can_open(url_)) return;
   lcm_.reset();
   next_try_ = now;
 }

@@ -34,6 +34,8 @@ class LcmLink {
 
   // Uses that failed.
   [[nodiscard]] std::uint64_t errors() const { return errors_.value(); }
+  // Attempts to open it, at most one a second.
+  [[nodiscard]] std::uint64_t attempts() const { return attempts_.value(); }
   [[nodiscard]] std::uint64_t reconnects() const { return reconnects_.value(); }
   // The last use went well: false from the first message that does not leave.
   [[nodiscard]] bool works() const { return works_.value() != 0; }
@@ -48,6 +50,7 @@ class LcmLink {
   bool failing_ = false;
   bool was_open_ = false;
   Counter errors_;
+  Counter attempts_;
   Counter reconnects_;
   Counter works_;
 };

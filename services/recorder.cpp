@@ -91,7 +91,7 @@ RecorderStatus Recorder::status() const {
   RecorderStatus status;
   status.state = state_.load(std::memory_order_relaxed);
   status.written = written_.value();
-  status.dropped = ring_.drops().no_free_slot;
+  status.dropped = ring_.drops().no_free_slot + left_.value();
   status.failed = failed_.value();
   status.bytes = bytes_.value();
   status.free_gb = free_gb_.load(std::memory_order_relaxed);
@@ -112,8 +112,7 @@ void Recorder::run(const std::stop_token& stop) {
 }
 
 void Recorder::begin() {
-  while (ring_.oldest()) {
-  }  // offered while the last recording ended
+  drop_waiting();  // offered while the last recording ended
   std::error_code ignored;
   fs::create_directories(config_.folder, ignored);
   const bool full_before = state_ == RecorderState::disk_full;
@@ -144,7 +143,8 @@ Result<> Recorder::open_folder(const fs::path& folder) {
 
 void Recorder::write_next() {
   const FrameLease frame = ring_.oldest();
-  if (!frame || !folder_) return;
+  if (!frame) return;
+  if (!folder_) return left_.add();
   if (!enough_space()) {
     failed_.add();
     return fail_full();
@@ -182,10 +182,15 @@ void Recorder::give_up(RecorderState state, const std::string& problem) {
   if (empty) folder_name_.clear();
 }
 
+void Recorder::drop_waiting() {
+  while (ring_.oldest()) left_.add();
+}
+
 void Recorder::finish() {
   recording_ = false;
   const Clock::time_point limit = Clock::now() + kLongestFinish;
   while (folder_ && ring_.has_frame() && Clock::now() < limit) write_next();
+  drop_waiting();
   folder_.reset();
   state_ = RecorderState::off;
 }

@@ -30,7 +30,7 @@ enum class RecorderState : std::uint8_t { off, recording, disk_full, failed };
 struct RecorderStatus {
   RecorderState state = RecorderState::off;
   std::uint64_t written = 0;  // pairs, of all recordings
-  std::uint64_t dropped = 0;  // pairs for which the disk was too slow
+  std::uint64_t dropped = 0;  // pairs for which the disk was too slow, those that still waited at the end among them
   std::uint64_t failed = 0;   // pairs that could not be written
   std::uint64_t bytes = 0;
   double free_gb = 0;   // of the disk, when last looked at
@@ -68,6 +68,7 @@ class Recorder {
   [[nodiscard]] Result<> open_folder(const std::filesystem::path& folder);
   void write_next();
   void finish();
+  void drop_waiting();
   void fail(const Error& error);
   void fail_full();
   void give_up(RecorderState state, const std::string& problem);
@@ -83,6 +84,7 @@ class Recorder {
   std::atomic<double> free_gb_{0};
   std::uint64_t offered_ = 0;  // offer()'s thread
   Counter written_, failed_, bytes_;
+  Counter left_;                           // offered to a recording that had ended or failed meanwhile
   std::optional<RecordingFolder> folder_;  // recorder's thread
   std::chrono::steady_clock::time_point retry_at_;
   mutable std::mutex text_mutex_;  // of the two texts; taken when the state changes, never per pair

@@ -17,11 +17,12 @@ import os
 import sys
 
 from gv_faults import check_faults
-from gv_record import NO_PICTURES, Shown
+from gv_record import COUNT_LAG_US, NO_PICTURES, Shown
+from lcm_check import percentiles
 from lcm_log import events, results_and_reports, tracks
 
-# Why an exposure has no result at the listener; lcm_errors: it had one, that could not be sent.
-CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped lcm_errors".split()
+CAUSES = "dropped_in_source dropped_ring_full dropped_superseded dropped_unpaired results_dropped".split()
+UNHEARD = "lcm_errors"  # messages that could not be sent, at least two for each result
 MOST_ONE_SIDED = 0.02  # of the bodies: found or given up a pair earlier, where a live step left out work
 TURNED_MORE = 2  # a body has few points and is small: its orientation is worth less than the vehicle's
 MOST_OF_ORIGIN_M = 0.5  # two bodies nearer than this at first sight are one: less than bodies are apart
@@ -31,7 +32,6 @@ MOST_OF_ORIGIN_M = 0.5  # two bodies nearer than this at first sight are one: le
 OFFSET_M = 0.1
 TURN_DEG = 3.0
 MOST_RENUMBERED = 0.5  # of the bodies: numbers follow the order of finding
-HEALTH_LAG_US = 400_000  # a loss is in the counters so long after its exposure
 LATEST_RESULT_US = 500_000  # a result is there so long after its exposure
 
 
@@ -50,9 +50,9 @@ def check_drops(log, shown_path, rate_hz, end_ns=None):
             not_taken["both" if len(sides) == 2 else sides[0]] += 1
         elif tick not in answered:
             lost.append(tick)
-    counted = {name: reports[-1][name] for name in CAUSES}
+    counted = {name: reports[-1][name] for name in (*CAUSES, UNHEARD)}
     unexplained = [t for t in lost if not counted_around(t, shown, reports)]
-    bad = unexplained or len(lost) > sum(counted.values())
+    bad = unexplained or len(lost) > sum(counted[name] for name in CAUSES) + counted[UNHEARD] // 2
     foreign = [t for t in answered if t not in shown.frames["left"] or t not in shown.frames["right"]]
     print(f"exposures {last - first + 1} in {(last - first) * shown.period_us / 1e6:.1f} s, results {len(answered)}; "
           f"not taken by the software cameras: left {not_taken['left']}, right {not_taken['right']}, "
@@ -69,11 +69,11 @@ def check_drops(log, shown_path, rate_hz, end_ns=None):
 def counted_around(tick, shown, reports):
     """Whether the counters of the reports before and after this exposure differ."""
     time_us = tick * shown.period_us
-    before = [r for r in reports if r["utime"] < time_us] or [dict.fromkeys(CAUSES, 0)]
-    after = [r for r in reports if r["utime"] > time_us + HEALTH_LAG_US]
+    before = [r for r in reports if r["utime"] < time_us] or [dict.fromkeys((*CAUSES, UNHEARD), 0)]
+    after = [r for r in reports if r["utime"] > time_us + COUNT_LAG_US]
     if not after:
         return False
-    return any(after[0][name] > before[-1][name] for name in CAUSES)
+    return any(after[0][name] > before[-1][name] for name in (*CAUSES, UNHEARD))
 
 
 def write_played(log, shown_path, rate_hz, dataset, out):
@@ -119,9 +119,8 @@ class Differences:
     def tell(self):
         for what, values in (("apart [mm]", [1000 * d for d in self.apart_m]), ("turned [deg]", self.turned_deg),
                              ("apart in declared deviations", self.sigmas)):
-            values = sorted(values)
-            print(f"{self.name} {what}: p50 {values[len(values) // 2]:.4f} p99 {values[int(0.99 * len(values))]:.4f} "
-                  f"max {values[-1]:.4f}")
+            at = percentiles(values)
+            print(f"{self.name} {what}: p50 {at['p50']:.4f} p99 {at['p99']:.4f} max {at['max']:.4f}")
 
     def beyond(self, tolerance_m, tolerance_deg):
         return max(self.apart_m) > float(tolerance_m) or max(self.turned_deg) > float(tolerance_deg)

@@ -5,7 +5,7 @@ import os
 from collections import namedtuple
 
 from gv_outputs import CHECKS as AROUND
-from gv_record import NO_PICTURES, Shown
+from gv_record import NO_PICTURES, Shown, growth
 from lcm_log import results_and_reports
 
 # What a fault has to lead to: a state and its reason, and the counter that has to grow.
@@ -25,7 +25,6 @@ EXCHANGED = "left and right pictures exchanged"  # of both sides, when it has la
 BACK_FRAMES = {"off": 100, "heavy loss": 100}  # a camera that is on again is found, opened and started first
 BACK_OTHERS = 20
 HEAVY_LOSS = 0.005  # of the packets, of which a picture has hundreds
-COUNT_LAG_US = 400_000  # between what happened and the report that counts it
 
 
 class Episode:
@@ -96,12 +95,6 @@ def between(results, from_us, to_us):
     return [r for r in results if from_us <= r["utime"] <= to_us]
 
 
-def growth(reports, name, from_us, to_us):
-    before = [r for r in reports if r["utime"] <= from_us]
-    after = [r for r in reports if r["utime"] >= to_us + COUNT_LAG_US]
-    return after[0][name] - before[-1][name] if before and after else None
-
-
 def check_no_pose(episode, shown, results):
     """Of results of wrong pictures."""
     wrong = between(results, shown.tick(episode.start_us + shown.period_us) * shown.period_us, episode.end_us)
@@ -138,7 +131,7 @@ def check_back(episode, shown, results):
 
 def check_counted(episode, fault, shown, results, reports, until_us):
     grown = growth(reports, fault.counter, episode.start_us, until_us)
-    if grown is None:
+    if math.isnan(grown):
         return False, "no VIS_HEALTH before or after"
     inside = between(results, episode.start_us, until_us)
     if episode.verb == "loss":

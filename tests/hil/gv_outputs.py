@@ -4,19 +4,14 @@ and over when it was over. Each check gives pairs of good or not, and what was s
 import csv
 import datetime
 import glob
+import math
 import os
 import re
 
-COUNT_LAG_US = 400_000  # between what happened and the report that counts it
+from gv_record import COUNT_LAG_US, NO_PICTURES, growth
+
 RETRY_FRAMES = 40  # an output that was gone is tried once a second
 LOSSES = ("dropped_in_source", "dropped_ring_full", "dropped_superseded", "dropped_unpaired", "results_dropped")
-NO_PICTURES = "no pictures"
-
-
-def growth(reports, name, from_us, to_us):
-    before = [r for r in reports if r["utime"] <= from_us]
-    after = [r for r in reports if r["utime"] >= to_us + COUNT_LAG_US]
-    return after[0][name] - before[-1][name]
 
 
 def told_within(told_us, since_us, shown, within, what):
@@ -37,7 +32,10 @@ def check_hold(episode, shown, results, reports, _folder, within):
     reasons = ("deadline missed", "pairs dropped", NO_PICTURES)
     told = next((r for r in after if r["reason"] in reasons), None)
     yield told_within(told and told["publish_utime"], episode.end_us, shown, within, told["reason"] if told else "standstill")
-    back = next(r for r in after if r["state"] == "TRACKING")
+    back = next((r for r in after if r["state"] == "TRACKING"), None)
+    if back is None:
+        yield False, "no TRACKING afterwards"
+        return
     yield told_within(back["publish_utime"], episode.end_us, shown, RETRY_FRAMES, "TRACKING")
     until_us = back["utime"]
     inside = [r for r in results if episode.start_us - 4 * shown.period_us <= r["utime"] <= until_us]
@@ -70,10 +68,13 @@ def logged_us(folder, words, since_us):
 def check_route(episode, shown, results, reports, folder, within):
     """Over LCM nothing can be told of it: the journal does."""
     yield told_within(logged_us(folder, "LCM cannot be reached", episode.start_us), episode.start_us, shown, within, "in the journal")
-    before = [r for r in results if r["publish_utime"] < episode.start_us][-1]
-    after = next(r for r in results if r["publish_utime"] > episode.end_us)
+    before = [r for r in results if r["publish_utime"] < episode.start_us][-1:]
+    after = next((r for r in results if r["publish_utime"] > episode.end_us), None)
+    if not before or after is None:
+        yield False, "no result before or afterwards"
+        return
     yield told_within(after["publish_utime"], episode.end_us, shown, within, "results")
-    unheard = after["seq"] - before["seq"] - 1
+    unheard = after["seq"] - before[0]["seq"] - 1
     counted = growth(reports, "lcm_errors", episode.start_us, after["utime"])
     # Two or three messages a result, and once a second a report and a picture.
     seconds = (episode.end_us - episode.start_us) / 1e6 + 1
@@ -88,8 +89,8 @@ def check_bus(episode, shown, results, reports, _folder, within):
     lost = growth(reports, "can_sets_unheard", episode.start_us, back or episode.end_us)
     sent = growth(reports, "can_sets_sent", episode.start_us, back or episode.end_us)
     reported = [r["utime"] for r in reports]
-    from_us = max(t for t in reported if t <= episode.start_us)
-    to_us = min(t for t in reported if t >= (back or episode.end_us) + COUNT_LAG_US)
+    from_us = max((t for t in reported if t <= episode.start_us), default=math.nan)
+    to_us = min((t for t in reported if t >= (back or episode.end_us) + COUNT_LAG_US), default=math.nan)
     published = sum(from_us < r["publish_utime"] <= to_us for r in results)
     down_frames = (episode.end_us - episode.start_us) / shown.period_us
     yield (abs(published - lost - sent) <= 1 and lost >= down_frames - 2,

@@ -1,8 +1,17 @@
 """What the software cameras took (gv_cameras SHOWN_CSV), and what the service said of it (log of lcm-logger)."""
 
 import csv
+import math
 
 NO_PICTURES = "no pictures"
+COUNT_LAG_US = 400_000  # between what happened and the report that counts it
+
+
+def growth(reports, name, from_us, to_us):
+    """Of a counter of VIS_HEALTH; not a number, which fails every comparison, without a report before and after."""
+    before = [r for r in reports if r["utime"] <= from_us]
+    after = [r for r in reports if r["utime"] >= to_us + COUNT_LAG_US]
+    return after[0][name] - before[-1][name] if before and after else math.nan
 
 
 class Shown:

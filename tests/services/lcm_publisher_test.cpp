@@ -229,6 +229,7 @@ TEST(LcmLink, WithoutANetworkCountsAndGoesOn) {
   for (int i = 0; i < 5; ++i) publisher.publish(test::rich_publication());
   EXPECT_FALSE(publisher.link().works());
   EXPECT_EQ(publisher.link().errors(), 15U) << "three messages a result, none of which left";
+  EXPECT_EQ(publisher.link().attempts(), 1U) << "one try a second, not one a message";
 }
 
 TEST_F(LcmBus, LoggerAndPlayerGiveBackWhatWasPublished) {

@@ -266,6 +266,8 @@ TEST_F(RecorderTest, APairThatCannotBeWrittenEndsTheRecordingAtItsLastWholeRow) 
   EXPECT_LT(written, 100U);
   EXPECT_EQ(recorder->status().failed, 1U);
   recorder->stop();
+  ASSERT_TRUE(reaches(*recorder, RecorderState::off));
+  EXPECT_EQ(recorder->status().dropped, 100 - written - 1) << "those that waited behind the one that failed";
   const auto source = open_dataset(folder);
   ASSERT_TRUE(source.ok()) << source.error().message();
   EXPECT_EQ(source.value()->pair_count(), written);
