@@ -98,8 +98,8 @@ hold_service() {
   note hold service 1
   kill -STOP $service
   sleep 0.3
-  kill -CONT $service
   note hold service 0
+  kill -CONT $service
 }
 size_of_disk() { mount -o "remount,size=$1" "$work/recordings"; }
 happen() {
