@@ -133,6 +133,7 @@ void App::tick() {
   take_samples();
   log_cameras();
   log_exchanged_sides();
+  for (const std::string& command : parts_->service->take_obeyed()) parts_->log.line(LogLevel::notice, command);
   const Clock::time_point now = Clock::now();
   if (now >= p.next_health) {
     p.next_health = std::max(p.next_health + kHealthPeriod, now);

@@ -1,6 +1,7 @@
 #include "firmware-host/pelorusd/service_threads.h"
 
 #include <cstdint>
+#include <utility>
 
 #include "firmware-host/pelorusd/mounting.h"
 #include "firmware-host/runtime/calibration_writer.h"
@@ -109,7 +110,13 @@ void ServiceThreads::build(const Rigid3& T_body_cam, bool realtime, LogSink& log
   head->start(prepared("capture", head->is_live() ? ThreadClass::fifo_high : ThreadClass::normal));
   if (config.lcm.enabled && config.lcm.commands) {
     commands = std::make_unique<CommandListener>(
-        config.lcm, [this](const std::string& command, const std::string&) { return obey(command); },
+        config.lcm,
+        [this](const std::string& command, const std::string&) {
+          const CommandAnswer answer = obey(command);
+          const std::lock_guard lock(obeyed_mutex_);
+          obeyed_.push_back("command " + command + (answer.accepted ? ": " : " refused: ") + answer.text);
+          return answer;
+        },
         [clock = clock] { return clock.now(); });
   }
 }
@@ -123,6 +130,11 @@ void ServiceThreads::stop() {
   recorder.reset();
   preview.reset();
   publishing.reset();
+}
+
+std::vector<std::string> ServiceThreads::take_obeyed() {
+  const std::lock_guard lock(obeyed_mutex_);
+  return std::exchange(obeyed_, {});
 }
 
 // On the listener's thread: only atomics are touched.

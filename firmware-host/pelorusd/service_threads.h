@@ -4,6 +4,7 @@
 // the main thread, but for what the parts themselves allow.
 
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,8 @@ struct ServiceThreads {
   std::unique_ptr<PipelineThreads> workers;
   std::unique_ptr<Vision> vision;  // absent once the recording is at its end
   std::unique_ptr<CommandListener> commands;
+  // What was commanded since the last call, with the answers: for the log.
+  [[nodiscard]] std::vector<std::string> take_obeyed();
 
  private:
   explicit ServiceThreads(const ServiceConfig& c) : config(c) {}
@@ -55,6 +58,9 @@ struct ServiceThreads {
   void populate_memory(LogSink& log);
   void build(const Rigid3& T_body_cam, bool realtime, LogSink& log);
   [[nodiscard]] CommandAnswer obey(const std::string& command);
+
+  std::mutex obeyed_mutex_;  // of the listener and the main thread
+  std::vector<std::string> obeyed_;
 };
 
 }  // namespace pelorus

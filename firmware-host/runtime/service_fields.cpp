@@ -134,6 +134,10 @@ std::vector<ConfigConflict> service_conflicts(const ServiceConfig& config) {
   require(config.camera.rate_hz <= 0 || config.camera.tolerance_ms < 500 / config.camera.rate_hz,
           {"camera.tolerance_ms", "camera.rate_hz"},
           "camera.tolerance_ms must be below half the period of camera.rate_hz", see);
+  const MountingConfig& m = config.mounting;
+  const bool mounted = m.x_m != 0 || m.y_m != 0 || m.z_m != 0 || m.roll_deg != 0 || m.pitch_deg != 0 || m.yaw_deg != 0;
+  require(m.given || !mounted, {"mounting.given", "mounting.pitch_deg", "mounting.x_m"},
+          "mounting has values that would not be used", "set mounting.given to true, or leave the values out");
   if (config.source.kind != "aravis" && config.source.kind != "v4l2") return conflicts;
   require(!config.source.calibration.empty(), {"source.calibration", "source.kind"},
           "source.calibration must name a file for live cameras", see);

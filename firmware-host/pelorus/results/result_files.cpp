@@ -4,6 +4,7 @@
 #include <cinttypes>
 #include <cmath>
 #include <cstring>
+#include <regex>
 #include <system_error>
 
 namespace pelorus {
@@ -93,11 +94,25 @@ Error io_error(const fs::path& path, const std::string& detail, const std::strin
   return {ErrorCode::io, path.string(), detail, cure};
 }
 
+// Under the names that `pelorus export` gives: beside another run they would be taken for its own.
+std::vector<fs::path> exports_in(const fs::path& folder) {
+  static const std::regex kNames(
+      R"(run\.mcap|trajectories\.csv|scene\.ply|body_\d+\.ply|(camera|body_\d+)\.(export\.tum|kitti\.txt.*))");
+  std::vector<fs::path> found;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    if (std::regex_match(entry.path().filename().string(), kNames)) found.push_back(entry.path());
+  }
+  return found;
+}
+
 Result<Ok> remove_earlier_run(const fs::path& folder) {
   const ResultPaths paths(folder);
   std::error_code error;
-  for (const fs::path& path : {paths.camera, paths.objects, paths.frames, paths.timing, paths.points, paths.outlines,
-                               paths.lost_pairs, paths.overlay, paths.report, paths.incomplete}) {
+  std::vector<fs::path> old = exports_in(folder);
+  old.insert(old.end(), {paths.camera, paths.objects, paths.frames, paths.timing, paths.points, paths.outlines,
+                         paths.lost_pairs, paths.overlay, paths.report, paths.incomplete});
+  for (const fs::path& path : old) {
     fs::remove_all(path, error);
     if (error) return io_error(path, "cannot remove the earlier run: " + error.message(), "choose another --out");
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "core/base/nearest_rank.h"
 #include "firmware-host/pelorus/results/result_files.h"
 #include "firmware-host/pelorus/results/result_reader_table.h"
 
@@ -222,10 +223,7 @@ Result<std::optional<StepTimes>> read_step_times(const fs::path& folder) {
   if (table.problem()) return *table.problem();
   if (times_ms.empty()) return std::optional<StepTimes>();
   std::sort(times_ms.begin(), times_ms.end());
-  const auto at = [&](double share) {
-    return times_ms[static_cast<std::size_t>(share * static_cast<double>(times_ms.size() - 1) + 0.5)];
-  };
-  return std::optional<StepTimes>(StepTimes{at(0.5), at(0.99)});
+  return std::optional<StepTimes>(StepTimes{nearest_rank(times_ms, 0.5), nearest_rank(times_ms, 0.99)});
 }
 
 }  // namespace pelorus

@@ -2,6 +2,11 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+#include <set>
+
 #include "tests/firmware-host/pelorus/tool_process.h"
 
 namespace pelorus {
@@ -88,7 +93,23 @@ TEST(CommandLine, OutputWithContentIsRefusedAndOverwriteReplacesIt) {
   const Outcome refused = run_tool("replay " + scene + " --out " + out);
   EXPECT_EQ(refused.exit_code, 6);
   EXPECT_NE(refused.text.find("--overwrite"), std::string::npos) << refused.text;
+  for (const char* format : {"tum", "kitti", "csv", "mcap"}) {
+    ASSERT_EQ(run_tool("export " + out + " --format " + format).exit_code, 0) << format;
+  }
+  for (const char* name : {"scene.ply", "body_12.ply", "notes.txt"}) test::write_text(out + "/" + name, "older");
+  const auto names = [&out] {
+    std::set<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(out)) found.insert(entry.path().filename());
+    return found;
+  };
+  const std::set<std::string> with_exports = names();
   EXPECT_EQ(run_tool("replay " + scene + " --out " + out + " --overwrite").exit_code, 0);
+  std::set<std::string> gone;
+  std::ranges::set_difference(with_exports, names(), std::inserter(gone, gone.end()));
+  EXPECT_TRUE(gone.contains("camera.export.tum") && gone.contains("trajectories.csv") && gone.contains("scene.ply"));
+  EXPECT_TRUE(gone.contains("body_12.ply"));
+  EXPECT_TRUE(gone.contains("run.mcap") && gone.contains("camera.kitti.txt"));
+  EXPECT_FALSE(gone.contains("notes.txt")) << "not ours";
 }
 
 TEST(CommandLine, EvalWithoutTruthSaysWhatItCanAndFails) {

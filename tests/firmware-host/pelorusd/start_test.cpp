@@ -98,6 +98,15 @@ TEST(Start, CheckConfigEndsWithoutStarting) {
   EXPECT_NE(good.text.find("source.path='/nonexistent'"), std::string::npos) << good.text;
 }
 
+TEST(Start, AMountingThatWouldNotBeUsedIsAnError) {
+  const std::string mounting = "source:\n  path: /nonexistent\nmounting:\n  pitch_deg: -90\n";
+  const Outcome refused = start_with(mounting, "--check-config");
+  EXPECT_EQ(refused.exit_code, 5);
+  EXPECT_NE(refused.text.find("p.yaml:4"), std::string::npos) << refused.text;
+  EXPECT_NE(refused.text.find("mounting.given"), std::string::npos) << refused.text;
+  EXPECT_EQ(start_with(mounting + "  given: true\n", "--check-config").exit_code, 0);
+}
+
 // In a child, because a process cannot leave a namespace it entered. Exit code 0: all went as it should.
 int without_route(const std::filesystem::path& dive) {
   if (!test::enter_private_network({})) return 77;
