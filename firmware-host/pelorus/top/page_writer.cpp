@@ -32,30 +32,30 @@ std::string take_what_fits(std::string& rest, std::size_t room) {
 
 }  // namespace
 
-std::string number(double value, int decimals, const char* unit, double scale) {
+std::string number_text(double value, int decimals, const char* unit, double scale) {
   if (!std::isfinite(value)) return std::string("-") + unit;
   const double digit = std::pow(10.0, decimals);
   return text("%.*f", decimals, std::round(value * scale * digit) / digit + 0.0) + unit;
 }
 
-std::string right(const std::string& word, std::size_t width) {
+std::string padded_right(const std::string& word, std::size_t width) {
   return word.size() < width ? std::string(width - word.size(), ' ') + word : word;
 }
 
-std::string left(std::string word, std::size_t width) {
+std::string padded_left(std::string word, std::size_t width) {
   if (word.size() < width) word.append(width - word.size(), ' ');
   return word;
 }
 
 void PageWriter::line(const char* label, std::string facts, PageStyle style) {
-  PageLine made{{PageStyle::strong, left(label, kLabelWidth)}};
+  PageLine made{{PageStyle::strong, padded_left(label, kLabelWidth)}};
   std::size_t used = kLabelWidth;
   if (stale_) made.push_back({PageStyle::bad, age_ + "  "});
   if (stale_) used += age_.size() + 2;
   do {
     made.push_back({stale_ ? PageStyle::faint : style, take_what_fits(facts, columns_ > used ? columns_ - used : 0)});
     lines_.push_back(std::move(made));
-    made = {{PageStyle::strong, left("", kLabelWidth)}};
+    made = {{PageStyle::strong, padded_left("", kLabelWidth)}};
     used = kLabelWidth;
   } while (!facts.empty());
 }
@@ -67,7 +67,7 @@ void PageWriter::add_with_rest(PageLine made, const std::string& rest) {
     return add(std::move(made));
   }
   add(std::move(made));
-  add({{PageStyle::strong, left("", kLabelWidth)}, {style, rest}});
+  add({{PageStyle::strong, padded_left("", kLabelWidth)}, {style, rest}});
 }
 
 }  // namespace pelorus

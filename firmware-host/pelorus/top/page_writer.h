@@ -12,10 +12,10 @@ namespace pelorus {
 inline constexpr std::size_t kLabelWidth = 9;
 
 // "12.3 ms", or "- ms" when unknown; what rounds to zero has no sign.
-[[nodiscard]] std::string number(double value, int decimals, const char* unit, double scale = 1);
-// Filled up with blanks to `width`, the word at the right or the left.
-[[nodiscard]] std::string right(const std::string& word, std::size_t width);
-[[nodiscard]] std::string left(std::string word, std::size_t width);
+[[nodiscard]] std::string number_text(double value, int decimals, const char* unit, double scale = 1);
+// Filled up with blanks to `width`: the word stands at the right, or at the left.
+[[nodiscard]] std::string padded_right(const std::string& word, std::size_t width);
+[[nodiscard]] std::string padded_left(std::string word, std::size_t width);
 
 // A page under construction; a stale part is faint, behind a red mark with its age.
 class PageWriter {
@@ -25,7 +25,7 @@ class PageWriter {
   template <class Message>
   void part(const std::optional<Heard<Message>>& heard, double limit_s) {
     stale_ = is_stale(heard, now_, limit_s);
-    age_ = heard ? "STALE " + number(heard->age_s(now_), 1, " s") : "NOT HEARD YET";
+    age_ = heard ? "STALE " + number_text(heard->age_s(now_), 1, " s") : "NOT HEARD YET";
   }
   // Facts that do not fit go on below: a count of faults that is cut off would be as good as none.
   void line(const char* label, std::string facts, PageStyle style = PageStyle::plain);

@@ -37,7 +37,7 @@ void put_state(const BusView& view, PageWriter& page) {
     return;
   }
   const vis_odom_t& m = view.odom->message;
-  PageLine made{{PageStyle::strong, left("STATE", kLabelWidth)}};
+  PageLine made{{PageStyle::strong, padded_left("STATE", kLabelWidth)}};
   if (page.stale()) made.push_back({PageStyle::bad, page.age() + ", last "});
   made.push_back({page.stale() ? PageStyle::faint : style_of(m.state),
                   m.state_text + (m.reason_text.empty() ? "" : ": " + m.reason_text)});
@@ -53,18 +53,19 @@ void put_motion(const BusView& view, PageWriter& page) {
     return;
   }
   const Attitude a = attitude_of(m);
-  page.line("POSE", "x " + number(m.pos_m[0], 2, "") + " y " + number(m.pos_m[1], 2, "") + " z " +
-                        number(m.pos_m[2], 2, " m") + " roll " + number(a.roll_rad, 1, "", kDegrees) + " pitch " +
-                        number(a.pitch_rad, 1, "", kDegrees) + " yaw " + number(a.yaw_rad, 1, " deg", kDegrees));
+  page.line("POSE", "x " + number_text(m.pos_m[0], 2, "") + " y " + number_text(m.pos_m[1], 2, "") + " z " +
+                        number_text(m.pos_m[2], 2, " m") + " roll " + number_text(a.roll_rad, 1, "", kDegrees) +
+                        " pitch " + number_text(a.pitch_rad, 1, "", kDegrees) + " yaw " +
+                        number_text(a.yaw_rad, 1, " deg", kDegrees));
   if (!m.velocity_valid) {
     page.line("MOTION", "no velocity", PageStyle::warning);
     return;
   }
   const double(&v)[3] = m.vel_body_mps;
   const double(&w)[3] = m.rate_body_radps;
-  page.line("MOTION", "ahead " + number(v[0], 2, "") + " starboard " + number(v[1], 2, "") + " down " +
-                          number(v[2], 2, " m/s") + " turn " + number(w[0], 1, " ", kDegrees) +
-                          number(w[1], 1, " ", kDegrees) + number(w[2], 1, " deg/s", kDegrees));
+  page.line("MOTION", "ahead " + number_text(v[0], 2, "") + " starboard " + number_text(v[1], 2, "") + " down " +
+                          number_text(v[2], 2, " m/s") + " turn " + number_text(w[0], 1, " ", kDegrees) +
+                          number_text(w[1], 1, " ", kDegrees) + number_text(w[2], 1, " deg/s", kDegrees));
 }
 
 // "ring 12 (+3)": the total, and what came since the message before.
@@ -115,25 +116,28 @@ void put_health(const BusView& view, PageWriter& page) {
     return;
   }
   const vis_health_t& m = view.health->message;
-  page.line("LATENCY", "p50 " + number(m.latency_p50_ms, 1, "") + " p99 " + number(m.latency_p99_ms, 1, "") + " max " +
-                           number(m.latency_max_ms, 1, "") + " jitter " + number(m.release_jitter_ms, 2, " ms") +
-                           "  step " + number(m.step_p50_ms, 1, "") + " max " + number(m.step_max_ms, 1, " ms"));
-  page.line("RATES", "pairs " + number(m.pairs_rate_hz, 1, "") + " results " + number(m.results_rate_hz, 1, "") +
-                         " heard " + number(view.odom_rate_hz, 1, " Hz") + "  gap max " +
-                         number(m.interval_max_ms, 0, "") + " jitter " + number(m.interval_jitter_ms, 1, " ms"));
+  page.line("LATENCY", "p50 " + number_text(m.latency_p50_ms, 1, "") + " p99 " + number_text(m.latency_p99_ms, 1, "") +
+                           " max " + number_text(m.latency_max_ms, 1, "") + " jitter " +
+                           number_text(m.release_jitter_ms, 2, " ms") + "  step " + number_text(m.step_p50_ms, 1, "") +
+                           " max " + number_text(m.step_max_ms, 1, " ms"));
+  page.line("RATES", "pairs " + number_text(m.pairs_rate_hz, 1, "") + " results " +
+                         number_text(m.results_rate_hz, 1, "") + " heard " + number_text(view.odom_rate_hz, 1, " Hz") +
+                         "  gap max " + number_text(m.interval_max_ms, 0, "") + " jitter " +
+                         number_text(m.interval_jitter_ms, 1, " ms"));
   put_counters(m, view.health_before ? view.health_before->message : m, page);
-  page.line("PICTURE", "sync " + number(m.sync_error_ms, 2, " ms") + "  exposure " + number(m.exposure_ms, 1, " ms") +
-                           "  gray " + number(m.mean_grey, 0, "") + "  contrast " + number(m.contrast_grey, 0, "") +
-                           "  sigma " + number(m.sigma_px, 2, " px"));
-  page.line("HOST", "CPU " + number(m.cpu_percent, 0, " %") + "  memory " + number(m.memory_mb, 0, " MB") + "  " +
-                        number(m.temperature_degc, 0, " C") + "   pelorusd " + m.version + ", up " +
-                        number(m.uptime_s, 0, " s"));
+  page.line("PICTURE", "sync " + number_text(m.sync_error_ms, 2, " ms") + "  exposure " +
+                           number_text(m.exposure_ms, 1, " ms") + "  gray " + number_text(m.mean_grey, 0, "") +
+                           "  contrast " + number_text(m.contrast_grey, 0, "") + "  sigma " +
+                           number_text(m.sigma_px, 2, " px"));
+  page.line("HOST", "CPU " + number_text(m.cpu_percent, 0, " %") + "  memory " + number_text(m.memory_mb, 0, " MB") +
+                        "  " + number_text(m.temperature_degc, 0, " C") + "   pelorusd " + m.version + ", up " +
+                        number_text(m.uptime_s, 0, " s"));
   const bool refused = contains(m.privileges_text, "no real") || contains(m.privileges_text, "not locked") ||
                        contains(m.privileges_text, "refused");
   page.line("GRANTED", m.privileges_text, refused ? PageStyle::warning : PageStyle::plain);
   page.line("CAN", m.can_text, style_of_can(m.can_text));
   const bool disk_bad = contains(m.recorder_text, "full") || contains(m.recorder_text, "failed");
-  page.line("DISK", number(m.disk_free_gb, 1, " GB free") + "   recorder " + m.recorder_text,
+  page.line("DISK", number_text(m.disk_free_gb, 1, " GB free") + "   recorder " + m.recorder_text,
             disk_bad ? PageStyle::bad : PageStyle::plain);
 }
 
@@ -143,10 +147,11 @@ PageLine body_line(const vis_track_t& track, const BusView& view, const vis_trac
   const Direction to = direction_of(track);
   const double(&v)[3] = track.vel_world_mps;
   const double speed = track.velocity_valid ? std::hypot(v[0], v[1], v[2]) : std::numeric_limits<double>::quiet_NaN();
-  const std::string row = right(std::to_string(track.id), 4) + "  " + left(track.phase_text, 10) +
-                          right(number(track.range_m, 2, ""), 8) + right(number(closing, 2, ""), 12) +
-                          right(number(speed, 2, ""), 11) + right(number(to.bearing_rad, 0, "", kDegrees), 10) +
-                          right(number(to.elevation_rad, 0, "", kDegrees), 9) + right(std::to_string(track.points), 8);
+  const std::string row =
+      padded_right(std::to_string(track.id), 4) + "  " + padded_left(track.phase_text, 10) +
+      padded_right(number_text(track.range_m, 2, ""), 8) + padded_right(number_text(closing, 2, ""), 12) +
+      padded_right(number_text(speed, 2, ""), 11) + padded_right(number_text(to.bearing_rad, 0, "", kDegrees), 10) +
+      padded_right(number_text(to.elevation_rad, 0, "", kDegrees), 9) + padded_right(std::to_string(track.points), 8);
   const bool sure = track.phase == vis_track_t::PHASE_CONFIRMED;
   return {{stale ? PageStyle::faint : (sure ? PageStyle::plain : PageStyle::warning), row}};
 }
