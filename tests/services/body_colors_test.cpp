@@ -48,6 +48,8 @@ Eigen::Vector3d oklab(const Eigen::Vector3d& light) {
 
 // As seen with the sight that confuses them most. Below 2 nobody sees a difference; three times that is plain.
 constexpr double kPlain = 6;
+// The search that found these colors left 8.50 between any two bodies; a tenth is for the rounding of that figure.
+constexpr double kBetweenBodies = 8.4;
 double least_difference(Rgb a, Rgb b) {
   double least = 100;
   for (const Eigen::Matrix3d& sight : kinds_of_sight()) {
@@ -60,14 +62,15 @@ TEST(BodyColors, AreToldApartWithAnyKindOfColorBlindness) {
   for (int a = 1; a <= kColors; ++a) {
     EXPECT_GT(least_difference(object_color(BodyId{a}), kStaticColor), kPlain) << a << " and the static scene";
     for (int b = 1; b < a; ++b) {
-      EXPECT_GT(least_difference(object_color(BodyId{a}), object_color(BodyId{b})), kPlain) << a << " and " << b;
+      EXPECT_GT(least_difference(object_color(BodyId{a}), object_color(BodyId{b})), kBetweenBodies)
+          << a << " and " << b;
     }
   }
 }
 
 TEST(BodyColors, StandOutOnADarkPictureAndOnWhitePaper) {
   for (int id = 1; id <= kColors; ++id) {
-    EXPECT_GE(contrast(object_color(BodyId{id}), Rgb{255, 255, 255}), 2.95) << id;
+    EXPECT_GE(contrast(object_color(BodyId{id}), Rgb{255, 255, 255}), 3) << id;
     EXPECT_GE(contrast(object_color(BodyId{id}), Rgb{13, 23, 32}), 3) << id;
   }
 }
