@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import {inflateSync} from 'node:zlib';
-import {seek} from './play.mjs';
+import {seek, shown} from './play.mjs';
 
 const MOST_PAGES = 6;
 
@@ -44,7 +44,7 @@ export async function checkPrint(page) {
   assert.ok(replay, 'the first page holds the picture of the replay');
   const {share, colors} = content(replay);
   assert.ok(share > 0.005 && colors > 30, `the picture shows something: ${share} of it, in ${colors} colors`);
-  assert.equal(await page.evaluate(() => document.body.dataset.frame), '0', 'afterwards the page is as it was');
+  assert.equal((await shown(page)).frame, 0, 'afterwards the page is as it was');
   await checkMarks(page);
   await checkNarrow(page);
 }

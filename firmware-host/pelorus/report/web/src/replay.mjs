@@ -25,10 +25,7 @@ class Viewer {
     canvas.setAttribute('aria-label', 'Scene in 3D: vehicle, objects and points of the frame shown');
     stage.append(canvas);
     this.controls = new OrbitControls(this.camera, canvas);
-    this.controls.addEventListener('change', () => {
-      this.noteEye();
-      this.request();
-    });
+    this.controls.addEventListener('change', () => this.request());
     this.follows = false;
     this.aim('scene');
     this.last = this.content.vehiclePosition();
@@ -88,18 +85,13 @@ class Viewer {
     }
     this.last = vehicle;
     if (this.view === 'camera') this.lookThroughVehicle();
-    // What is shown, for tests and for scripts.
-    document.body.dataset.frame = String(this.playback.frame);
-    const text = (p) => p.toArray().map((x) => x.toFixed(5)).join(' ');
-    document.body.dataset.vehicle = text(vehicle);
-    document.body.dataset.target = text(this.controls.target);
-    document.body.dataset.outlines = JSON.stringify(this.content.shownOutlines());
-    this.noteEye();
     this.request();
   }
 
-  noteEye() {
-    document.body.dataset.eye = this.camera.position.toArray().map((x) => x.toFixed(5)).join(' ');
+  // In the axes of the view.
+  shown() {
+    return {frame: this.playback.frame, vehicle: this.content.vehiclePosition().toArray(), target: this.controls.target.toArray(),
+      eye: this.camera.position.toArray(), outlines: this.content.shownOutlines()};
   }
 
   lookThroughVehicle() {
@@ -200,4 +192,5 @@ export function showReplay(run, playback) {
   playback.addEventListener('frame', () => viewer.update());
   connectView(run, viewer);
   connectPrint(playback, viewer, stage);
+  stage.shown = () => viewer.shown(); // for tests and for scripts, at the time they ask
 }
