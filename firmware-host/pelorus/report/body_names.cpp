@@ -29,6 +29,12 @@ std::string body_name(const ReportInput& input, const BodyErrors& errors) {
   return name + true_name(input, errors);
 }
 
+std::string short_body_name(const ReportInput& input, const BodyErrors& errors) {
+  const std::set<BodyId> ids = ids_of(errors);
+  if (ids.size() <= 2) return body_name(input, errors);
+  return number_of(*ids.begin()) + " +" + std::to_string(ids.size() - 1) + " " + true_name(input, errors);
+}
+
 const std::string& true_name(const ReportInput& input, const BodyErrors& errors) {
   return input.judged.truth->bodies[static_cast<std::size_t>(errors.body)];
 }

@@ -12,6 +12,8 @@ namespace pelorus {
 [[nodiscard]] std::string object_name(const ReportInput& input, BodyId id);
 // Of a true body, with every number it was seen under.
 [[nodiscard]] std::string body_name(const ReportInput& input, const BodyErrors& errors);
+// Beside a curve, where there is no room for every number: "#1 +19 crate" from three on.
+[[nodiscard]] std::string short_body_name(const ReportInput& input, const BodyErrors& errors);
 [[nodiscard]] const std::string& true_name(const ReportInput& input, const BodyErrors& errors);
 
 }  // namespace pelorus

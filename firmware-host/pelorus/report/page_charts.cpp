@@ -91,6 +91,7 @@ std::string errors_json(const ReportInput& input, const PageBudget& budget) {
   for (const BodyErrors& errors : input.errors.bodies) {
     bodies.push_back(JsonObject()
                          .text("name", body_name(input, errors))
+                         .text("short_name", short_body_name(input, errors))
                          .text("true_name", true_name(input, errors))
                          .text("color", css_color(object_color(errors.samples.front().object)))
                          .raw("curves", curves_json(run, errors.samples, std::max<std::size_t>(limit, 50)))

@@ -9,7 +9,7 @@ import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {delimiter, join, resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
-import {checkLabels, checkNames, checkOneFrame, checkParts, checkUnknown} from './report_page/parts.mjs';
+import {checkLabels, checkLongName, checkNames, checkOneFrame, checkParts, checkUnknown} from './report_page/parts.mjs';
 import {checkEnd, checkFollow, checkOrbit, checkOutlinesMove, checkPlay, checkViews} from './report_page/play.mjs';
 import {checkPrint} from './report_page/print.mjs';
 import {distances, outlineMiddles} from './report_page/results.mjs';
@@ -33,21 +33,30 @@ function report(out, more) {
   return join(out, 'report.html');
 }
 
-// A page of the same run in which nothing can be said about some figures.
-function withUnknown(file) {
+// A page of the same run with other figures in it.
+function changed(file, name, change) {
   const page = readFileSync(file, 'utf8');
-  const unknown = file.replace('.html', '_unknown.html');
-  writeFileSync(unknown, page.replace(/(<script id="run" type="application\/json">)(.*?)(<\/script>)/s, (_, open, data, close) => {
+  const other = file.replace('.html', `_${name}.html`);
+  writeFileSync(other, page.replace(/(<script id="run" type="application\/json">)(.*?)(<\/script>)/s, (_, open, data, close) => {
     const run = JSON.parse(data);
-    const {camera, objects} = run.evaluation;
-    camera.final_drift_percent = null;
-    camera.step_m = camera.step_rad = null;
-    camera.ate_rmse_m = undefined; // absent
-    objects.right_count_share = objects.right_count_settled_share = null;
+    change(run);
     return open + JSON.stringify(run).replaceAll('<', '\\u003c') + close;
   }));
-  return unknown;
+  return other;
 }
+
+// Nothing can be said about some figures.
+const withUnknown = (file) => changed(file, 'unknown', ({evaluation: {camera, objects}}) => {
+  camera.final_drift_percent = null;
+  camera.step_m = camera.step_rad = null;
+  camera.ate_rmse_m = undefined; // absent
+  objects.right_count_share = objects.right_count_settled_share = null;
+});
+
+const LONG_TRUE_NAME = `crate ${'of the second dive '.repeat(5)}`.trim();
+const LONG_NAME = `${[...Array(20).keys()].map((i) => `#${i + 1} `).join('')}${LONG_TRUE_NAME}`;
+const withLongName = (file) => changed(file, 'long', ({errors: {bodies}}) =>
+  Object.assign(bodies[0], {name: LONG_NAME, short_name: `#1 +19 ${LONG_TRUE_NAME}`}));
 
 // Errors of the page, while `look` looks at it.
 async function open(browser, file, look) {
@@ -93,6 +102,7 @@ async function run(chromium, folder) {
     await open(browser, file, (page) => lookAtRun(page, out));
     await open(browser, oneFrame, checkOneFrame);
     await open(browser, withUnknown(file), checkUnknown);
+    await open(browser, withLongName(file), (page) => checkLongName(page, LONG_NAME));
   } finally {
     await browser.close();
   }

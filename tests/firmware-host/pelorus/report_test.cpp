@@ -268,5 +268,23 @@ TEST(BodyNames, OneNameForABodyWhereverThePageTellsOfIt) {
   EXPECT_NE(errors_json(input, {}).find(name), std::string::npos);
 }
 
+TEST(BodyNames, BesideACurveTheNumbersOfABodyAreCounted) {
+  const Dive dive;
+  ReportInput input = dive.input();
+  BodyErrors& errors = input.errors.bodies.at(0);
+  EXPECT_EQ(short_body_name(input, errors), "#7 crate");
+  const ErrorSample sample = errors.samples.front();
+  errors.samples.push_back(sample);
+  errors.samples.back().object = BodyId{1};
+  EXPECT_EQ(short_body_name(input, errors), "#1 #7 crate");
+  for (int id = 2; id <= 20; ++id) {
+    errors.samples.push_back(sample);
+    errors.samples.back().object = BodyId{id};
+  }
+  EXPECT_EQ(short_body_name(input, errors), "#1 +19 crate");
+  EXPECT_NE(body_name(input, errors).find("#1 #2 #3 "), std::string::npos) << "elsewhere all of them";
+  EXPECT_NE(errors_json(input, {}).find("\"short_name\":\"#1 +19 crate\""), std::string::npos);
+}
+
 }  // namespace
 }  // namespace pelorus

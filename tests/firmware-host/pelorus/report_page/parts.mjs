@@ -1,7 +1,7 @@
 // The parts of the page: charts, tables, names.
 
 import assert from 'node:assert/strict';
-import {CHARACTER_WIDTH, LABEL_HEIGHT, placeLabels} from '../../../../firmware-host/pelorus/report/web/src/labels.mjs';
+import {CHARACTER_WIDTH, LABEL_HEIGHT, labelMargin, labelText, placeLabels} from '../../../../firmware-host/pelorus/report/web/src/labels.mjs';
 
 export async function checkParts(page) {
   const found = await page.evaluate(() => {
@@ -94,6 +94,24 @@ export async function checkUnknown(page) {
   assert.doesNotMatch(await page.$eval('main', (main) => main.innerText), /NaN|undefined|null/);
 }
 
+// A body seen under twenty numbers, with a true name as long as a line: curves keep their room, the legend has it all.
+export async function checkLongName(page, name) {
+  const charts = await page.$$eval('#error-charts svg', (all) => all.map((svg) => {
+    const widths = [...svg.querySelectorAll('[aria-label="line"] path')].map((path) => path.getBoundingClientRect().width);
+    const whole = svg.getBoundingClientRect();
+    return {curves: Math.max(...widths) / whole.width,
+      outside: [...svg.querySelectorAll('.end-label')].filter((label) => label.getBoundingClientRect().right > whole.right + 1).length};
+  }));
+  assert.equal(charts.length, 4);
+  for (const {curves, outside} of charts) {
+    assert.ok(curves > 0.5, `curves take ${curves} of the width of their chart`);
+    assert.equal(outside, 0, 'labels within their charts');
+  }
+  assert.ok((await page.$eval('#errors .legend', (legend) => legend.textContent)).includes(name));
+  const width = await page.evaluate(() => document.documentElement.scrollWidth);
+  assert.ok(width <= page.viewport().width, `${width} px wide: wider than the screen`);
+}
+
 // Names of paths that end at one place, in a corner of the view.
 export function checkLabels() {
   assert.ok(CHARACTER_WIDTH > 7, 'bold letters of 13 px');
@@ -108,4 +126,7 @@ export function checkLabels() {
     }
   });
   assert.equal(placed[5].y, 200, 'one that stands alone stays at its end');
+  assert.equal(labelText('#1 crate'), '#1 crate');
+  assert.equal(labelMargin(['#1 crate', 'vehicle']), 12 + 8 * CHARACTER_WIDTH);
+  assert.ok(labelMargin(['x'.repeat(300)]) < 200, 'no name takes the room of the curves');
 }

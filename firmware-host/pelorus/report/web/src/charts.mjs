@@ -3,7 +3,7 @@
 import * as Plot from '@observablehq/plot';
 import {lengthUnit} from './facts.mjs';
 import {DEG_PER_RAD, element, figure, INK, isKnown, legend, nothing} from './format.mjs';
-import {addEndLabels, CHARACTER_WIDTH} from './labels.mjs';
+import {addEndLabels, labelMargin} from './labels.mjs';
 
 const HALF = 590;
 const FULL = 1190;
@@ -50,16 +50,16 @@ function chart(id, plot, caption, playback) {
 }
 
 // The last figure of a curve is where its name stands.
-function endOfCurve({name, color, time_s, values}) {
+function endOfCurve({name, short_name, color, time_s, values}) {
   const last = values.findLastIndex(isKnown);
-  return last < 0 ? null : {name, color, x: time_s[last], y: values[last]};
+  return last < 0 ? null : {name: short_name ?? name, color, x: time_s[last], y: values[last]};
 }
 
-// series: {name, color, time_s, values}
+// series: {name, short_name, color, time_s, values}
 function curves(series, yLabel, end) {
   const marks = series.map(({color, width, time_s, values}) =>
     Plot.line(time_s, {x: (t) => t, y: (_, i) => values[i] ?? NaN, stroke: color, strokeWidth: width ?? 1.6}));
-  const marginRight = 12 + CHARACTER_WIDTH * Math.max(...series.map(({name}) => name.length));
+  const marginRight = labelMargin(series.map(({name, short_name}) => short_name ?? name));
   const plot = Plot.plot({
     width: HALF, height: CURVE_HEIGHT, marginLeft: 62, marginBottom: 38, marginRight, grid: true, style: STYLE,
     x: {label: 'time [s]', labelAnchor: 'center', domain: [0, end]},

@@ -3,6 +3,17 @@
 export const LABEL_HEIGHT = 17;
 export const CHARACTER_WIDTH = 8.2; // bold, 13 px, at most
 const GAP = 9; // from the end of the path
+const MOST_CHARACTERS = 20; // the legend tells the others
+
+// The name as it stands beside a curve.
+export function labelText(name) {
+  return name.length <= MOST_CHARACTERS ? name : `${name.slice(0, MOST_CHARACTERS - 1)}…`;
+}
+
+// How much room right of a chart the names beside its curves take, in pixels.
+export function labelMargin(names) {
+  return 12 + CHARACTER_WIDTH * Math.max(...names.map((name) => labelText(name).length));
+}
 
 // In pixels. labels: {x, y, width}: the end of a path and how long its name is. Returns the left edge and the middle of each.
 export function placeLabels(labels, {left, right, top, bottom}) {
@@ -30,7 +41,8 @@ export function placeLabels(labels, {left, right, top, bottom}) {
 // Writes names into a chart: ends {name, color, x, y} in its units, box in pixels. What finds no room the legend tells.
 export function addEndLabels(plot, ends, box) {
   const svg = plot.tagName === 'svg' ? plot : plot.querySelector('svg');
-  const shown = ends.slice(0, Math.floor((box.bottom - box.top) / LABEL_HEIGHT));
+  const shown = ends.slice(0, Math.floor((box.bottom - box.top) / LABEL_HEIGHT))
+    .map((end) => ({...end, name: labelText(end.name)}));
   const [x, y] = [plot.scale('x'), plot.scale('y')];
   const places = placeLabels(shown.map((end) =>
     ({x: x.apply(end.x), y: y.apply(end.y), width: end.name.length * CHARACTER_WIDTH})), box);
