@@ -4,25 +4,12 @@
 #include <string>
 
 #include "firmware-host/runtime/config_fields.h"
-#include "firmware-host/runtime/config_loader.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/firmware-host/runtime/config_file.h"
 
 namespace pelorus {
 namespace {
 
-class ConfigConflicts : public ::testing::Test {
- protected:
-  std::string problems_of(const std::string& text) {
-    test::write_text(path_, text);
-    const Result<Ok> outcome = apply_config_file(path_, config_);
-    return outcome ? "none" : outcome.error().message();
-  }
-  std::string line(int number) const { return path_.string() + ":" + std::to_string(number) + ":"; }
-
-  test::TemporaryFolder folder_;
-  std::filesystem::path path_ = folder_.path() / "p.yaml";
-  PipelineConfig config_;
-};
+using ConfigConflicts = test::ConfigFile;
 
 TEST_F(ConfigConflicts, LiveCamerasNeedADeviceACalibrationAndATolerance) {
   EXPECT_NE(problems_of("source:\n  kind: aravis\n  calibration: c\n").find("camera.left"), std::string::npos);

@@ -11,31 +11,12 @@
 #include <string>
 
 #include "firmware-host/runtime/config_fields.h"
+#include "tests/firmware-host/runtime/config_file.h"
 
 namespace pelorus {
 namespace {
 
-class ConfigFile : public ::testing::Test {
- protected:
-  ConfigFile() {
-    const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(::testing::TempDir()) / (std::string("pelorus_") + test->name() + ".yaml");
-  }
-  ~ConfigFile() override { std::filesystem::remove(path_); }
-
-  Result<Ok> apply(const std::string& text) {
-    std::ofstream(path_) << text;
-    return apply_config_file(path_, config_);
-  }
-  std::string problems_of(const std::string& text) {
-    const Result<Ok> outcome = apply(text);
-    return outcome ? "none" : outcome.error().message();
-  }
-  std::string line(int number) const { return path_.string() + ":" + std::to_string(number) + ":"; }
-
-  std::filesystem::path path_;
-  PipelineConfig config_;
-};
+using test::ConfigFile;
 
 double value_of(const ConfigField& field) {
   if (std::string* const* words = std::get_if<std::string*>(&field.value)) {
