@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
 
 #include "drivers/synthetic/scene_file.h"
 #include "drivers/synthetic/synthetic_source.h"
@@ -39,15 +40,17 @@ double speed_m_per_s(const SyntheticSource& source, int object, int frame) {
 }
 
 TEST(ShippedScenes, AllLoadAndAreNamedLikeTheirFile) {
-  int count = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(PELORUS_SOURCE_DIR "/config/scenes")) {
-    if (entry.path().extension() != ".yaml") continue;
-    const Result<Scene> scene = load_scene(entry.path().string());
-    ASSERT_TRUE(scene.ok()) << scene.error().message();
-    EXPECT_EQ(scene.value().name, entry.path().stem().string());
-    ++count;
+  for (const auto& [folder, least] : {std::pair("/config/scenes", 7), std::pair("/tests/golden", 4)}) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(PELORUS_SOURCE_DIR) + folder)) {
+      if (entry.path().extension() != ".yaml") continue;
+      const Result<Scene> scene = load_scene(entry.path().string());
+      ASSERT_TRUE(scene.ok()) << scene.error().message();
+      EXPECT_EQ(scene.value().name, entry.path().stem().string());
+      ++count;
+    }
+    EXPECT_GE(count, least) << folder;
   }
-  EXPECT_GE(count, 7);
 }
 
 // A grid of points on the surface of a's box lies outside b by more than the margin.
