@@ -14,9 +14,7 @@ void BusOptions::add_to(CLI::App& parser) {
 
 Result<LcmConfig> BusOptions::resolve() const {
   ServiceConfig config;
-  for (const std::string& file : configs_) {
-    if (const Result<Ok> applied = apply_config_file(file, config); !applied) return applied.error();
-  }
+  if (const Result<Ok> applied = apply_config_files(configs_, config); !applied) return applied.error();
   if (!url_.empty()) config.lcm.url = url_;
   if (!url_.empty() && !is_lcm_url(url_))
     return Error{ErrorCode::io, "--url", "'" + url_ + "' is no address of LCM", kLcmUrlCure};

@@ -9,6 +9,7 @@
 
 #include "firmware-host/pelorusd/app.h"
 #include "firmware-host/pelorusd/service_arguments.h"
+#include "firmware-host/runtime/camera_config.h"
 #include "firmware-host/runtime/config_loader.h"
 #include "firmware-host/runtime/settings_hash.h"
 #include "firmware-host/runtime/standard_output.h"
@@ -19,33 +20,28 @@ using pelorus::Error;
 using pelorus::ErrorCode;
 using pelorus::ServiceArguments;
 
-// The settings of all files, each on top of those before it. The problems of all files are told at once.
-pelorus::Result<pelorus::ServiceConfig> load(const std::vector<std::string>& files) {
-  pelorus::ServiceConfig config;
-  std::string problems;
-  ErrorCode code = ErrorCode::bad_configuration;
-  for (const std::string& file : files) {
-    const pelorus::Result<> applied = pelorus::apply_config_file(file, config);
-    if (applied) continue;
-    problems += (problems.empty() ? "" : "\n") + applied.error().message();
-    code = applied.error().code;
-  }
+// What a service needs beside settings that fit each other.
+std::vector<pelorus::ConfigConflict> start_conflicts(const pelorus::ServiceConfig& config) {
+  if (const auto missing = pelorus::missing_driver(config.source.kind))
+    return {{{"source.kind"}, missing->what, missing->cure}};
   const bool needs_path = config.source.kind == "replay" || config.source.kind == "synthetic";
-  if (problems.empty() && needs_path && config.source.path.empty()) {
-    problems = files.back() + ": source.path is not given (write where the pairs come from)";
-  }
-  if (!problems.empty()) return Error{code, "configuration", problems, ""};
-  return config;
+  if (!needs_path || !config.source.path.empty()) return {};
+  return {{{"source.path", "source.kind"}, "source.path is not given", "write where the pairs come from"}};
+}
+
+// What was printed has been taken: 0, else told and 6.
+int printed_exit_code() {
+  const pelorus::Result<> printed = pelorus::flush_standard_output();
+  if (printed) return 0;
+  std::fprintf(stderr, "pelorusd: %s\n", printed.error().message().c_str());
+  return pelorus::exit_code(printed.error().code);
 }
 
 int check(const pelorus::ServiceConfig& config) {
   const std::string changed = pelorus::changed_settings(config);
   std::printf("configuration %s is good\n", pelorus::config_hash(config).c_str());
   std::printf("different from the defaults: %s\n", changed.empty() ? "nothing" : changed.c_str());
-  const pelorus::Result<> printed = pelorus::flush_standard_output();
-  if (printed) return 0;
-  std::fprintf(stderr, "pelorusd: %s\n", printed.error().message().c_str());
-  return pelorus::exit_code(printed.error().code);
+  return printed_exit_code();
 }
 
 int run_service(int argc, char** argv) {
@@ -58,15 +54,15 @@ int run_service(int argc, char** argv) {
     return parser.exit(e) == 0 ? 0 : pelorus::exit_code(ErrorCode::bad_usage);
   }
   pelorus::LogSink log(pelorus::stderr_is_journal());
-  const auto config = load(arguments.configs);
-  if (!config) {
-    log.line(pelorus::LogLevel::error, config.error().message());
-    return pelorus::exit_code(config.error().code);
+  pelorus::ServiceConfig config;
+  if (const auto applied = pelorus::apply_config_files(arguments.configs, config, start_conflicts); !applied) {
+    log.line(pelorus::LogLevel::error, applied.error().message());
+    return pelorus::exit_code(applied.error().code);
   }
-  if (arguments.check_config) return check(config.value());
+  if (arguments.check_config) return check(config);
   pelorus::block_signals();
   log.line(pelorus::LogLevel::notice, "pelorusd " PELORUS_VERSION);
-  const auto app = pelorus::App::create(config.value(), log);
+  const auto app = pelorus::App::create(config, log);
   if (!app) {
     log.line(pelorus::LogLevel::error, app.error().message());
     return pelorus::exit_code(app.error().code);

@@ -49,13 +49,9 @@ Cameras make_aravis([[maybe_unused]] const CameraConfig& config, [[maybe_unused]
   return cameras;
 }
 
-std::vector<CameraProblem> aravis_problems([[maybe_unused]] const CameraConfig& config) {
-#ifdef PELORUS_WITH_ARAVIS
+std::vector<CameraProblem> aravis_problems(const CameraConfig& config) {
   if (config.right.empty()) return {{"right", "is not given", "GigE Vision needs two cameras: name both"}};
   return {};
-#else
-  return {{"left", "GigE Vision is not built in", "build with -DPELORUS_WITH_ARAVIS=ON"}};
-#endif
 }
 
 #ifdef PELORUS_WITH_V4L2
@@ -83,17 +79,13 @@ Cameras make_v4l2([[maybe_unused]] const CameraConfig& config, [[maybe_unused]] 
   return cameras;
 }
 
-std::vector<CameraProblem> v4l2_problems([[maybe_unused]] const CameraConfig& config) {
-#ifdef PELORUS_WITH_V4L2
+std::vector<CameraProblem> v4l2_problems(const CameraConfig& config) {
   const char* cure = "leave it out and set it with v4l2-ctl or a udev rule";
   std::vector<CameraProblem> problems;
   if (!config.trigger.empty()) problems.push_back({"trigger", "cannot be set through V4L2", cure});
   if (config.gain_db >= 0)
     problems.push_back({"gain_db", "cannot be set through V4L2, whose gains have no unit", cure});
   return problems;
-#else
-  return {{"left", "V4L2 is not built in", "build with -DPELORUS_WITH_V4L2=ON"}};
-#endif
 }
 
 }  // namespace
@@ -114,12 +106,24 @@ std::vector<CameraProblem> camera_problems(const std::string& driver, const Came
   return problems;
 }
 
+std::optional<MissingDriver> missing_driver([[maybe_unused]] const std::string& driver) {
+#ifndef PELORUS_WITH_ARAVIS
+  if (driver == "aravis") return MissingDriver{"GigE Vision is not built in", "build with -DPELORUS_WITH_ARAVIS=ON"};
+#endif
+#ifndef PELORUS_WITH_V4L2
+  if (driver == "v4l2") return MissingDriver{"V4L2 is not built in", "build with -DPELORUS_WITH_V4L2=ON"};
+#endif
+  return std::nullopt;
+}
+
 Result<Cameras> make_cameras(const std::string& driver, const CameraConfig& config, const CaptureClock& clock) {
   const std::vector<CameraProblem> problems = camera_problems(driver, config);
   if (!problems.empty()) {
     const CameraProblem& first = problems.front();
     return Error{ErrorCode::bad_configuration, "camera." + first.key, first.what, first.cure};
   }
+  if (const auto missing = missing_driver(driver))
+    return Error{ErrorCode::bad_configuration, "source.kind", missing->what, missing->cure};
   return driver == "aravis" ? make_aravis(config, clock) : make_v4l2(config, clock);
 }
 

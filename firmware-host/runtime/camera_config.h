@@ -3,6 +3,7 @@
 // factory opens nothing.
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,8 +41,8 @@ struct CameraConfig {
 
 [[nodiscard]] StereoSyncConfig sync_config(const CameraConfig& config);
 
-// What cannot be whatever the devices say: no device named, a setting that the driver does not have, a driver that is
-// not built in.
+// What cannot be whatever the devices say and whatever is built in: no device named, a setting that the driver does not
+// have.
 struct CameraProblem {
   std::string key;  // in section `camera`
   std::string what;
@@ -49,8 +50,16 @@ struct CameraProblem {
 };
 [[nodiscard]] std::vector<CameraProblem> camera_problems(const std::string& driver, const CameraConfig& config);
 
+// Why this program has no such driver; absent when it has, or there is none of that name. For who opens cameras: a
+// file for a vehicle's cameras is good for all else without them.
+struct MissingDriver {
+  std::string what;
+  std::string cure;
+};
+[[nodiscard]] std::optional<MissingDriver> missing_driver(const std::string& driver);
+
 // One camera of two views or two of one, left first. `driver`: "aravis" or "v4l2".
-// Errors: the first of camera_problems.
+// Errors: the first of camera_problems, or missing_driver.
 [[nodiscard]] Result<std::vector<std::unique_ptr<Camera>>> make_cameras(const std::string& driver,
                                                                         const CameraConfig& config,
                                                                         const CaptureClock& clock);

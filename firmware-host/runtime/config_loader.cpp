@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <filesystem>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <set>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "firmware-host/runtime/config_fields.h"
@@ -17,8 +19,14 @@
 namespace pelorus {
 namespace {
 
-struct Problem {
+// A line of one of the files.
+struct Place {
+  std::size_t file = 0;
   int line = 0;  // from 1; 0 = the file as a whole
+};
+
+struct Problem {
+  Place place;
   std::string what;
   std::string cure;
 };
@@ -72,36 +80,59 @@ std::optional<Number> parse_number(const std::string& text) {
   return value;
 }
 
-class FileReader {
+// One after the other, each on top of those before it.
+class FilesReader {
  public:
-  explicit FileReader(ServiceConfig& config) : fields_(service_fields(config)) {
+  explicit FilesReader(ServiceConfig& config) : fields_(service_fields(config)) {
     for (ConfigField& field : config_fields(config.pipeline)) fields_.push_back(std::move(field));
   }
 
-  void read(const std::vector<YAML::Node>& documents) {
+  void read(std::size_t file, const std::string& path) {
+    file_ = file;
+    std::error_code ignored;
+    try {
+      // yaml-cpp would read a folder as an empty file.
+      if (std::filesystem::is_directory(path, ignored)) return report_unreadable();
+      read_documents(YAML::LoadAllFromFile(path));
+    } catch (const YAML::BadFile&) {
+      report_unreadable();
+    } catch (const YAML::Exception& e) {
+      all_known_ = false;
+      problems_.push_back({{file_, e.mark.line + 1}, "not valid YAML: " + e.msg, "check indentation, colons and tabs"});
+    }
+  }
+
+  // Between settings as all files make them. A setting that could not be read has nothing to contradict.
+  void report_conflicts(const std::vector<ConfigConflict>& conflicts) {
+    for (const ConfigConflict& conflict : conflicts) {
+      Place place{file_, 0};  // no file names any of the keys
+      bool all_read = all_known_;
+      for (const std::string& key : conflict.keys) {
+        all_read = all_read && !unread_.contains(key);
+        if (const auto found = places_.find(key); place.line == 0 && found != places_.end()) place = found->second;
+      }
+      if (all_read) problems_.push_back({place, conflict.rule, conflict.cure});
+    }
+  }
+
+  [[nodiscard]] bool unreadable() const { return unreadable_; }
+  [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
+
+ private:
+  void read_documents(const std::vector<YAML::Node>& documents) {
     if (documents.empty()) return;
     if (documents.size() > 1) report(documents[1], "a second document begins", "remove the '---' line");
     read_sections(documents[0]);
   }
 
-  // Between settings as they are with this file. A setting that could not be read has nothing to contradict.
-  void report_conflicts(const std::vector<ConfigConflict>& conflicts) {
-    for (const ConfigConflict& conflict : conflicts) {
-      int line = 0;  // all keys in earlier files
-      bool all_read = true;
-      for (const std::string& key : conflict.keys) {
-        all_read = all_read && !unread_.contains(key);
-        if (const auto found = lines_.find(key); line == 0 && found != lines_.end()) line = found->second;
-      }
-      if (all_read) problems_.push_back({line, conflict.rule, conflict.cure});
-    }
+  void report_unreadable() {
+    unreadable_ = true;
+    all_known_ = false;
+    problems_.push_back({{file_, 0}, "cannot read the configuration file", "check path and rights"});
   }
 
-  [[nodiscard]] const std::vector<Problem>& problems() const { return problems_; }
-
- private:
   void report(const YAML::Node& where, std::string what, std::string cure) {
-    problems_.push_back({line_of(where), std::move(what), std::move(cure)});
+    problems_.push_back({{file_, line_of(where)}, std::move(what), std::move(cure)});
   }
 
   void read_sections(const YAML::Node& root) {
@@ -135,9 +166,14 @@ class FileReader {
         report_unknown_key(entry.first, section, key);
       } else {
         const std::size_t before = problems_.size();
-        lines_.emplace(section + "." + key, line_of(entry.first));
+        const std::string name = section + "." + key;
+        places_.insert_or_assign(name, Place{file_, line_of(entry.first)});
         read_value(*field, entry.second);
-        if (problems_.size() > before) unread_.insert(section + "." + key);
+        if (problems_.size() > before) {
+          unread_.insert(name);
+        } else {
+          unread_.erase(name);
+        }
       }
     }
   }
@@ -209,50 +245,48 @@ class FileReader {
 
   std::vector<ConfigField> fields_;
   std::vector<Problem> problems_;
-  std::map<std::string, int> lines_;  // of the keys in this file
-  std::set<std::string> unread_;      // keys whose value is a problem
+  std::size_t file_ = 0;                 // being read
+  std::map<std::string, Place> places_;  // of the keys, where they were given last
+  std::set<std::string> unread_;         // keys whose last value is a problem
+  bool all_known_ = true;                // no file is missing or broken as a whole
+  bool unreadable_ = false;
 };
 
-Error to_error(const std::filesystem::path& file, std::vector<Problem> problems) {
-  std::stable_sort(problems.begin(), problems.end(),
-                   [](const Problem& a, const Problem& b) { return a.line < b.line; });
+Error to_error(const std::vector<std::string>& files, std::vector<Problem> problems, ErrorCode code) {
+  std::stable_sort(problems.begin(), problems.end(), [](const Problem& a, const Problem& b) {
+    return std::pair(a.place.file, a.place.line) < std::pair(b.place.file, b.place.line);
+  });
   const auto place = [&](const Problem& p) {
-    return p.line > 0 ? file.string() + ":" + std::to_string(p.line) : file.string();
+    return p.place.line > 0 ? files[p.place.file] + ":" + std::to_string(p.place.line) : files[p.place.file];
   };
-  if (problems.size() == 1) {
-    return {ErrorCode::bad_configuration, place(problems[0]), problems[0].what, problems[0].cure};
-  }
+  if (problems.size() == 1) return {code, place(problems[0]), problems[0].what, problems[0].cure};
   std::string detail = std::to_string(problems.size()) + " problems";
   for (const Problem& p : problems) detail += "\n  " + place(p) + ": " + p.what + " (" + p.cure + ")";
-  return {ErrorCode::bad_configuration, file.string(), detail, ""};
+  const bool of_one = problems.front().place.file == problems.back().place.file;
+  return {code, of_one ? files[problems.front().place.file] : "configuration", detail, ""};
 }
 
 }  // namespace
 
-Result<Ok> apply_config_file(const std::filesystem::path& file, ServiceConfig& config) {
-  std::error_code ignored;
-  const Error unreadable{ErrorCode::io, file.string(), "cannot read the configuration file", "check path and rights"};
-  if (std::filesystem::is_directory(file, ignored)) return unreadable;  // yaml-cpp would read it as an empty file
+Result<Ok> apply_config_files(const std::vector<std::string>& files, ServiceConfig& config, const ConfigRules& more) {
+  if (files.empty()) return Ok{};
   ServiceConfig changed = config;
-  FileReader reader(changed);
-  try {
-    reader.read(YAML::LoadAllFromFile(file.string()));
-  } catch (const YAML::BadFile&) {
-    return unreadable;
-  } catch (const YAML::Exception& e) {
-    return to_error(file, {{e.mark.line + 1, "not valid YAML: " + e.msg, "check indentation, colons and tabs"}});
-  }
+  FilesReader reader(changed);
+  for (std::size_t i = 0; i < files.size(); ++i) reader.read(i, files[i]);
   reader.report_conflicts(config_conflicts(changed.pipeline));
   reader.report_conflicts(service_conflicts(changed));
-  if (!reader.problems().empty()) return to_error(file, reader.problems());
+  if (more && reader.problems().empty()) reader.report_conflicts(more(changed));
+  if (!reader.problems().empty()) {
+    return to_error(files, reader.problems(), reader.unreadable() ? ErrorCode::io : ErrorCode::bad_configuration);
+  }
   config = changed;
   return Ok{};
 }
 
-Result<Ok> apply_config_file(const std::filesystem::path& file, PipelineConfig& config) {
+Result<Ok> apply_config_files(const std::vector<std::string>& files, PipelineConfig& config) {
   ServiceConfig service;
   service.pipeline = config;
-  if (Result<Ok> applied = apply_config_file(file, service); !applied) return applied;
+  if (Result<Ok> applied = apply_config_files(files, service); !applied) return applied;
   config = service.pipeline;
   return Ok{};
 }

@@ -44,9 +44,8 @@ Result<std::shared_ptr<const PreloadedPairs>> load_pairs(const LatencyArguments&
 
 Result<LatencyOptions> options_of(const LatencyArguments& arguments) {
   LatencyOptions options;
-  for (const std::string& file : arguments.configs) {
-    if (const Result<Ok> applied = apply_config_file(file, options.config); !applied) return applied.error();
-  }
+  if (const Result<Ok> applied = apply_config_files(arguments.configs, options.config); !applied)
+    return applied.error();
   options.rate_hz = arguments.rate_hz;
   options.seconds = arguments.seconds;
   if (arguments.latency_ms > 0) options.config.timing.latency_ms = arguments.latency_ms;

@@ -20,9 +20,7 @@ struct DoctorArguments {
 
 Result<int> run_doctor(const DoctorArguments& arguments) {
   ServiceConfig config;
-  for (const std::string& file : arguments.configs) {
-    if (const Result<Ok> applied = apply_config_file(file, config); !applied) return applied.error();
-  }
+  if (const Result<Ok> applied = apply_config_files(arguments.configs, config); !applied) return applied.error();
   CheckupOptions options;
   options.configured = !arguments.configs.empty();
   const std::vector<HostCheck> checks = check_host(config, HostFiles(), options);

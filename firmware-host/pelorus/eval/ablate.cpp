@@ -161,9 +161,7 @@ Result<std::vector<std::string>> chosen_steps(const AblateArguments& arguments) 
 
 Result<int> run_verb(const AblateArguments& arguments) {
   PipelineConfig config;
-  for (const std::string& file : arguments.configs) {
-    if (Result<Ok> applied = apply_config_file(file, config); !applied) return applied.error();
-  }
+  if (const Result<Ok> applied = apply_config_files(arguments.configs, config); !applied) return applied.error();
   const Result<std::vector<std::string>> steps = chosen_steps(arguments);
   if (!steps) return steps.error();
   if (Result<> usable = check_recording(arguments.dataset, arguments.calibration); !usable) return usable.error();

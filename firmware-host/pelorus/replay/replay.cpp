@@ -31,9 +31,8 @@ struct ReplayArguments {
 
 Result<int> run_verb(const ReplayArguments& arguments) {
   ReplayOptions options;
-  for (const std::string& file : arguments.configs) {
-    if (Result<Ok> applied = apply_config_file(file, options.pipeline); !applied) return applied.error();
-  }
+  if (const Result<Ok> applied = apply_config_files(arguments.configs, options.pipeline); !applied)
+    return applied.error();
   // The source first: a mistyped data set must not leave an output folder behind.
   Result<std::unique_ptr<StereoSource>> source = open_source(arguments.dataset, arguments.calibration);
   if (!source) return source.error();

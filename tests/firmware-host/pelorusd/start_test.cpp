@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdio>
 
+#include "firmware-host/runtime/camera_config.h"
 #include "tests/firmware-host/pelorusd/running_service.h"
 #include "tests/support/private_network.h"
 
@@ -89,6 +90,26 @@ TEST(Start, AllProblemsOfTheConfigurationAreListedWithTheirLines) {
   EXPECT_EQ(outcome.exit_code, 5);
   for (const char* part : {"4 problems", "p.yaml:2", "p.yaml:4", "latency_ms", "p.yaml:6", "p.yaml:7"}) {
     EXPECT_NE(outcome.text.find(part), std::string::npos) << part << "\n" << outcome.text;
+  }
+}
+
+// A file for the vehicle, one for its bench: neither has to be whole.
+TEST(Start, RulesBetweenSettingsHoldForAllFilesTogether) {
+  if (missing_driver("v4l2")) GTEST_SKIP() << missing_driver("v4l2")->what;
+  const TemporaryFolder folder;
+  const std::string base = (folder.path() / "base.yaml").string(), boat = (folder.path() / "boat.yaml").string();
+  test::write_text(base, "source:\n  kind: v4l2\n  calibration: c\ncamera:\n  rate_hz: 20\n  gain_db: 3\n");
+  test::write_text(boat, "camera:\n  left: /dev/video0\n  gain_db: -1\n");
+  const Outcome whole = start("--check-config --config " + base + " --config " + boat);
+  EXPECT_EQ(whole.exit_code, 0) << whole.text;
+  EXPECT_EQ(start("--check-config --config " + base).exit_code, 5);
+  test::write_text(boat, "camera:\n  left: /dev/video0\n  right: /dev/video0\n  tolerance_ms: 30\n  gain: 1\n");
+  const Outcome broken = start("--check-config --config " + base + " --config " + boat);
+  EXPECT_EQ(broken.exit_code, 5);
+  for (const std::string& part : {std::string("4 problems"), base + ":6: camera.gain_db cannot be set",
+                                  boat + ":3: camera.right is the left camera again",
+                                  boat + ":4: camera.tolerance_ms must be below", boat + ":5: unknown key"}) {
+    EXPECT_NE(broken.text.find(part), std::string::npos) << part << "\n" << broken.text;
   }
 }
 

@@ -15,7 +15,7 @@ class ConfigFile : public ::testing::Test {
  protected:
   Result<Ok> apply(const std::string& text) {
     write_text(path_, text);
-    return apply_config_file(path_, config_);
+    return apply_config_files({path_.string()}, config_);
   }
   std::string problems_of(const std::string& text) {
     const Result<Ok> outcome = apply(text);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -50,7 +51,7 @@ std::vector<ConfigField> all_fields(ServiceConfig& config) {
 TEST(ShippedConfig, RepeatsEveryDefault) {
   ServiceConfig moved;
   for (const ConfigField& field : all_fields(moved)) move_value(field);
-  const Result<Ok> outcome = apply_config_file(PELORUS_SOURCE_DIR "/config/pelorus.yaml", moved);
+  const Result<Ok> outcome = apply_config_files({PELORUS_SOURCE_DIR "/config/pelorus.yaml"}, moved);
   ASSERT_TRUE(outcome.ok()) << outcome.error().message();
   ServiceConfig defaults;
   const std::vector<ConfigField> expected = all_fields(defaults);
@@ -67,7 +68,7 @@ TEST(ShippedConfig, EveryOtherFileIsAccepted) {
     const std::string name = entry.path().filename().string();
     if (entry.path().extension() != ".yaml" || name.starts_with("stereo")) continue;  // stereo*: calibrations
     ServiceConfig config;
-    const Result<Ok> outcome = apply_config_file(entry.path(), config);
+    const Result<Ok> outcome = apply_config_files({entry.path().string()}, config);
     EXPECT_TRUE(outcome.ok()) << outcome.error().message();
     ++files;
   }
@@ -166,7 +167,7 @@ TEST_F(ConfigFile, TextsTakeTheListedWordsOnly) {
 TEST_F(ConfigFile, ServiceAndPipelineSettingsComeFromOneFile) {
   std::ofstream(path_) << "source:\n  path: dive\nsteps:\n  net_filter: false\n";
   ServiceConfig service;
-  ASSERT_TRUE(apply_config_file(path_, service).ok());
+  ASSERT_TRUE(apply_config_files({path_.string()}, service).ok());
   EXPECT_EQ(service.source.path, "dive");
   EXPECT_FALSE(service.pipeline.steps.net_filter);
 }
@@ -269,7 +270,7 @@ TEST_F(ConfigFile, OtherShapesThanSectionsAreRefused) {
 
 TEST_F(ConfigFile, MissingFileOrFolderIsAnInputOutputError) {
   for (const std::filesystem::path& path : {path_ / "no", std::filesystem::path(::testing::TempDir())}) {
-    const Result<Ok> outcome = apply_config_file(path, config_);
+    const Result<Ok> outcome = apply_config_files({path.string()}, config_);
     ASSERT_FALSE(outcome.ok());
     EXPECT_EQ(outcome.error().code, ErrorCode::io);
   }
