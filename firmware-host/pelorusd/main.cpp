@@ -51,7 +51,7 @@ int run_service(int argc, char** argv) {
   try {
     parser.parse(argc, argv);
   } catch (const CLI::ParseError& e) {
-    return parser.exit(e) == 0 ? 0 : pelorus::exit_code(ErrorCode::bad_usage);
+    return parser.exit(e) == 0 ? printed_exit_code() : pelorus::exit_code(ErrorCode::bad_usage);
   }
   pelorus::LogSink log(pelorus::stderr_is_journal());
   pelorus::ServiceConfig config;

@@ -68,6 +68,14 @@ TEST(Start, ACalibrationThatCannotBeUsedHasItsExitCode) {
   EXPECT_NE(outcome.text.find("calibration.yaml"), std::string::npos) << outcome.text;
 }
 
+TEST(Start, HelpAndVersionOnAFullDiskAreNoSuccess) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
+  for (const std::string option : {"--help", "--version"}) {
+    EXPECT_EQ(start(option).exit_code, 0) << option;
+    EXPECT_EQ(start(option + " 2>/dev/null >/dev/full #").exit_code, 6) << option;
+  }
+}
+
 TEST(Start, WhatHelpPromisesIsWhatTheProgramCanDo) {
   EXPECT_EQ(start("--help").text.find("7 device"), std::string::npos) << "absent devices do not end the service";
 }
