@@ -68,14 +68,22 @@ class WorkFolder {
 
  private:
   WorkFolder() = default;
+  // Before the dive is rendered, which a demo does under the same name: one that is killed there is known too.
+  static Result<> mark_as_own(const fs::path& folder) {
+    std::error_code error;
+    fs::create_directory(folder / kAllOn, error);
+    if (!error) return Ok{};
+    return Error{ErrorCode::io, folder.string(), "cannot create a folder in it: " + error.message(),
+                 "check its rights and free space"};
+  }
   // An earlier ablation is replaced when asked for; anything else in the folder is not ours to touch.
   static Result<> make_usable(const fs::path& folder, bool overwrite) {
     std::error_code error;
-    const bool earlier = fs::exists(folder / kAllOn, error) || fs::exists(folder / "dataset", error) ||
-                         fs::exists(folder / "dataset.partial", error);  // of an ablation that was killed
-    if (overwrite && earlier) return Ok{};
+    if (overwrite && fs::is_directory(folder / kAllOn, error)) return Ok{};
     Result<Ok> ready = prepare_output_folder(folder, false);
-    if (ready || !overwrite) return ready;
+    if (ready) return mark_as_own(folder);
+    const bool holds_something = fs::is_directory(folder, error) && !fs::is_empty(folder, error) && !error;
+    if (!overwrite || !holds_something) return ready;
     return Error{ErrorCode::io, folder.string(), "the folder holds something else than an earlier ablation",
                  "give --out another folder"};
   }

@@ -156,6 +156,31 @@ TEST_F(Output, AblateRefusesAFolderThatIsNotItsOwnBeforeItRuns) {
   EXPECT_EQ(run_tool(ablate + own + " --overwrite").exit_code, 0);
 }
 
+// A demo renders its dive under the same name.
+TEST_F(Output, AblateLeavesTheDiveOfADemoAlone) {
+  replay();
+  const std::string scene = (folder_.path() / "scene.yaml").string();
+  const fs::path demo = folder_.path() / "demo";
+  for (const char* name : {"dataset", "dataset.partial"}) {
+    fs::remove_all(demo);
+    write_text(demo / name / "mav0" / "mine", "kept");
+    const Outcome foreign = run_tool("ablate " + scene + " --only net_filter --overwrite --out " + demo.string());
+    EXPECT_EQ(foreign.exit_code, 6) << foreign.text;
+    EXPECT_TRUE(holds(foreign.text, "something else than an earlier ablation")) << foreign.text;
+    EXPECT_EQ(read_text(demo / name / "mav0" / "mine"), "kept");
+  }
+}
+
+// With --overwrite too what is wrong is told, not that something else is there.
+TEST_F(Output, AblateTellsWhyAFolderCannotBeUsed) {
+  replay();
+  write_text(folder_.path() / "file", "");
+  const std::string ablate = "ablate " + dive_ + " --only net_filter --overwrite --out ";
+  const Outcome file = run_tool(ablate + (folder_.path() / "file").string());
+  EXPECT_EQ(file.exit_code, 6) << file.text;
+  EXPECT_TRUE(holds(file.text, "is a file, not a folder")) << file.text;
+}
+
 TEST_F(Output, AblateOnAFullDiskHasTheCodeOfOutput) {
   ASSERT_EQ(run_tool("synth " + small_scene(folder_, 20) + " --out " + dive_).exit_code, 0);
   const Outcome full = run_tool("ablate " + dive_ + " --only net_filter --out " + run_, "trap '' XFSZ; ulimit -f 4; ");
