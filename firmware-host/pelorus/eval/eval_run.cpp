@@ -9,7 +9,7 @@ namespace pelorus {
 Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calibration_file,
                             const std::filesystem::path& folder, const EvaluationConfig& config) {
   JudgedRun judged;
-  Result<EstimatedRun> run = read_run(folder);
+  Result<EstimatedRun> run = read_run(folder, &judged.cut);
   if (!run) return run.error();
   judged.run = std::move(run.value());
   const Result<std::optional<StepTimes>> step_times = read_step_times(folder);
@@ -31,6 +31,7 @@ Result<JudgedRun> judge_run(const std::string& dataset, const std::string& calib
   result.step_times = step_times.value();
   result.lost = lost.value();
   result.incomplete = incomplete_reason(folder);
+  if (result.incomplete && !judged.cut.empty()) *result.incomplete += "; " + judged.cut;
   if (!judged.truth) {
     result.evaluation.facts = run_facts(judged.run);
     return judged;

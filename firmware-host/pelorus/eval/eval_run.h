@@ -31,6 +31,7 @@ struct RunEvaluation {
 
 struct JudgedRun {
   EstimatedRun run;
+  std::string cut;  // what is missing at its end (read_run)
   std::optional<Truth> truth;
   RunEvaluation evaluation;
 };

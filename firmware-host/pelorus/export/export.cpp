@@ -83,8 +83,10 @@ Result<int> run_export(const ExportArguments& arguments) {
     return Error{ErrorCode::bad_usage, "--body", "is for tum, kitti and ply, which can hold one body alone",
                  "leave it out: csv and mcap hold all bodies"};
   }
-  const Result<EstimatedRun> run = read_run(arguments.run);
+  std::string cut;
+  const Result<EstimatedRun> run = read_run(arguments.run, &cut);
   if (!run) return run.error();
+  if (!cut.empty()) std::fprintf(stderr, "pelorus: warning: %s: %s\n", arguments.run.c_str(), cut.c_str());
   if (run.value().empty()) return Error{ErrorCode::bad_input, arguments.run, "the run has no frames", ""};
   const fs::path path = arguments.out.empty() ? default_path(arguments) : fs::path(arguments.out);
   const Result<> done = arguments.format == "mcap" ? export_mcap(run.value(), path, arguments.overwrite)

@@ -24,9 +24,10 @@ Result<std::optional<LostPairs>> read_lost_pairs(const std::filesystem::path& fo
   const std::filesystem::path file = ResultPaths(folder).lost_pairs;
   std::error_code ignored;
   if (!std::filesystem::exists(file, ignored)) return std::optional<LostPairs>();
-  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+  Result<TextTable> read = TextTable::read_of_run(file, TableHeader::first_line);
   if (!read) return read.error();
   TextTable& table = read.value();
+  if (table.blank()) return std::optional<LostPairs>();
   if (table.size() != 1 || table.columns() != 3) {
     return Error{ErrorCode::bad_input, file.string(), "does not hold one row of three counts",
                  "remove the file: gaps between frames are counted then, or repeat the run"};

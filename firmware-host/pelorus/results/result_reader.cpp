@@ -5,6 +5,7 @@
 #include <map>
 
 #include "core/base/nearest_rank.h"
+#include "firmware-host/pelorus/results/incomplete_mark.h"
 #include "firmware-host/pelorus/results/result_files.h"
 #include "firmware-host/pelorus/results/result_reader_table.h"
 
@@ -48,9 +49,10 @@ struct FrameContents {
 };
 
 Result<EstimatedRun> read_frames(const fs::path& file, FrameContents& contents) {
-  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+  Result<TextTable> read = TextTable::read_of_run(file, TableHeader::first_line);
   if (!read) return read.error();
   TextTable& table = read.value();
+  if (table.blank()) return EstimatedRun();
   for (const char* name : {"seq", "timestamp_ns", "state"}) {
     if (!table.find(name)) return missing_column(file, name);
   }
@@ -89,13 +91,12 @@ Error incomplete_file(const fs::path& file, const std::string& held, const std::
           "the file was cut off or damaged: repeat the run"};
 }
 
-Result<Ok> check_contents(const ResultPaths& paths, const FrameContents& contents, bool has_objects,
-                          const EstimatedRun& run) {
+Result<Ok> check_contents(const ResultPaths& paths, const FrameContents& contents, const EstimatedRun& run) {
   const auto poses = std::count_if(run.begin(), run.end(), [](const EstimatedFrame& f) { return f.T_world_cam; });
   const auto expected = std::count(contents.has_pose.begin(), contents.has_pose.end(), true);
   if (!contents.has_pose.empty() && poses != expected)
     return incomplete_file(paths.camera, std::to_string(poses) + " poses", std::to_string(expected));
-  for (std::size_t i = 0; has_objects && i < contents.objects.size(); ++i) {
+  for (std::size_t i = 0; i < contents.objects.size(); ++i) {
     const std::size_t held = run[i].objects.size();
     if (static_cast<std::int64_t>(held) == contents.objects[i]) continue;
     return incomplete_file(paths.objects, std::to_string(held) + " objects of frame " + std::to_string(run[i].seq),
@@ -104,9 +105,45 @@ Result<Ok> check_contents(const ResultPaths& paths, const FrameContents& content
   return Ok{};
 }
 
+// How many frames a file holds whole that was cut off at its end: `held` rows of a frame, of `told` in frames.csv.
+// Absent where other rows are missing or too many: that is damage, not a cut.
+template <class Held, class Told>
+std::optional<std::size_t> frames_before_cut(std::size_t frames, const Held& held, const Told& told) {
+  std::size_t whole = 0;
+  while (whole < frames && held(whole) == told(whole)) ++whole;
+  if (whole < frames && held(whole) > told(whole)) return std::nullopt;
+  for (std::size_t i = whole + 1; i < frames; ++i)
+    if (held(i) > 0) return std::nullopt;
+  return whole;
+}
+
+// A run that was killed ends with the last frame that all files hold.
+void cut_run(FrameContents& contents, EstimatedRun& run, std::string& told) {
+  using Count = std::int64_t;
+  const auto poses = frames_before_cut(
+      contents.has_pose.size(), [&](std::size_t i) { return Count{run[i].T_world_cam ? 1 : 0}; },
+      [&](std::size_t i) { return Count{contents.has_pose[i] ? 1 : 0}; });
+  const auto objects = frames_before_cut(
+      contents.objects.size(), [&](std::size_t i) { return static_cast<Count>(run[i].objects.size()); },
+      [&](std::size_t i) { return contents.objects[i]; });
+  if (!poses || !objects) return;  // check_contents tells of it
+  const std::size_t all = run.size();
+  const std::size_t kept =
+      std::min(contents.has_pose.empty() ? all : *poses, contents.objects.empty() ? all : *objects);
+  if (kept == all) return;
+  told = "cut to its first " + std::to_string(kept) + " of " + std::to_string(all) + " frames, where " +
+         (contents.has_pose.size() > kept && *poses == kept ? "camera.tum" : "objects.csv") + " ends";
+  run.erase(run.begin() + static_cast<std::ptrdiff_t>(kept), run.end());
+  contents.has_pose.resize(std::min(kept, contents.has_pose.size()));
+  contents.objects.resize(std::min(kept, contents.objects.size()));
+}
+
+// Written after the last frame of frames.csv, by a run that was killed before it could write that frame there.
+bool is_ahead(Timestamp time, const EstimatedRun& run) { return run.empty() || time > run.back().capture_time; }
+
 // Poses of camera.tum into the run; a run without frames.csv consists of them.
-Result<Ok> read_camera(const fs::path& file, bool has_frames, EstimatedRun& run) {
-  Result<TextTable> read = TextTable::read(file, TableHeader::none);
+Result<Ok> read_camera(const fs::path& file, bool has_frames, bool killed, EstimatedRun& run) {
+  Result<TextTable> read = TextTable::read_of_run(file, TableHeader::none);
   if (!read) return read.error();
   TextTable& table = read.value();
   if (table.size() > 0 && table.columns() != 8) {
@@ -127,7 +164,7 @@ Result<Ok> read_camera(const fs::path& file, bool has_frames, EstimatedRun& run)
       run.push_back(std::move(frame));
     } else if (const auto found = frame_at.find(time); found != frame_at.end()) {
       run[found->second].T_world_cam = T_world_cam;
-    } else {
+    } else if (!killed || !is_ahead(time, run)) {
       table.complain(row, "no frame of frames.csv has this time");
     }
     if (table.problem()) return *table.problem();
@@ -161,10 +198,11 @@ EstimatedObject read_object(TextTable& table, std::size_t row) {
   return object;
 }
 
-Result<Ok> read_objects(const fs::path& file, EstimatedRun& run) {
-  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+Result<Ok> read_objects(const fs::path& file, bool killed, EstimatedRun& run) {
+  Result<TextTable> read = TextTable::read_of_run(file, TableHeader::first_line);
   if (!read) return read.error();
   TextTable& table = read.value();
+  if (table.blank()) return Ok{};
   for (const char* name :
        {"timestamp_ns", "object_id", "state", "p_x", "q_w", "m_x", "mq_w", "points", "sigma_t_m", "sigma_r_rad"}) {
     if (!table.find(name)) return missing_column(file, name);
@@ -172,7 +210,9 @@ Result<Ok> read_objects(const fs::path& file, EstimatedRun& run) {
   std::map<Timestamp, std::size_t> frame_at;
   for (std::size_t i = 0; i < run.size(); ++i) frame_at[run[i].capture_time] = i;
   for (std::size_t row = 0; row < table.size(); ++row) {
-    const auto found = frame_at.find(Timestamp{table.integer(row, *table.find("timestamp_ns"))});
+    const Timestamp time{table.integer(row, *table.find("timestamp_ns"))};
+    if (killed && is_ahead(time, run)) continue;
+    const auto found = frame_at.find(time);
     if (found == frame_at.end()) table.complain(row, "no frame has this time");
     const EstimatedObject object = read_object(table, row);
     if (table.problem()) return *table.problem();
@@ -183,12 +223,13 @@ Result<Ok> read_objects(const fs::path& file, EstimatedRun& run) {
 
 }  // namespace
 
-Result<EstimatedRun> read_run(const fs::path& folder) {
+Result<EstimatedRun> read_run(const fs::path& folder, std::string* cut) {
   const ResultPaths paths(folder);
   std::error_code ignored;
   if (!fs::is_regular_file(paths.camera, ignored)) {
     return Error{ErrorCode::bad_input, folder.string(), "no camera.tum here", "give the --out folder of a replay"};
   }
+  const bool killed = incomplete_reason(folder).has_value();
   EstimatedRun run;
   FrameContents contents;
   const bool has_frames = fs::is_regular_file(paths.frames, ignored);
@@ -197,15 +238,17 @@ Result<EstimatedRun> read_run(const fs::path& folder) {
     if (!frames) return frames.error();
     run = std::move(frames.value());
   }
-  if (Result<Ok> read = read_camera(paths.camera, has_frames, run); !read) return read.error();
+  if (Result<Ok> read = read_camera(paths.camera, has_frames, killed, run); !read) return read.error();
+  if (fs::is_regular_file(paths.objects, ignored)) {
+    if (Result<Ok> read = read_objects(paths.objects, killed, run); !read) return read.error();
+  }
+  std::string told;
+  if (killed) cut_run(contents, run, told);
   if (run.empty()) {
     return Error{ErrorCode::bad_input, folder.string(), "the run holds no frame", "repeat the replay"};
   }
-  const bool has_objects = fs::is_regular_file(paths.objects, ignored);
-  if (has_objects) {
-    if (Result<Ok> read = read_objects(paths.objects, run); !read) return read.error();
-  }
-  if (Result<Ok> fit = check_contents(paths, contents, has_objects, run); !fit) return fit.error();
+  if (Result<Ok> fit = check_contents(paths, contents, run); !fit) return fit.error();
+  if (cut) *cut = told;
   return run;
 }
 
@@ -213,9 +256,10 @@ Result<std::optional<StepTimes>> read_step_times(const fs::path& folder) {
   const fs::path file = ResultPaths(folder).timing;
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return std::optional<StepTimes>();
-  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+  Result<TextTable> read = TextTable::read_of_run(file, TableHeader::first_line);
   if (!read) return read.error();
   TextTable& table = read.value();
+  if (table.blank()) return std::optional<StepTimes>();
   const auto column = table.find("step_us");
   if (!column) return missing_column(file, "step_us");
   std::vector<double> times_ms;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <fstream>
 
+#include "firmware-host/pelorus/results/incomplete_mark.h"
+
 namespace pelorus {
 namespace {
 
@@ -40,7 +42,11 @@ constexpr double kUnitTolerance = 1e-3;
 
 }  // namespace
 
-Result<TextTable> TextTable::read(const std::filesystem::path& file, TableHeader header) {
+Result<TextTable> TextTable::read_of_run(const std::filesystem::path& file, TableHeader header) {
+  return read(file, header, incomplete_reason(file.parent_path()) ? CutLine::leave_away : CutLine::refuse);
+}
+
+Result<TextTable> TextTable::read(const std::filesystem::path& file, TableHeader header, CutLine cut_line) {
   std::ifstream stream(file);
   if (!stream) return Error{ErrorCode::bad_input, file.string(), "cannot be opened", "check the path"};
   TextTable table;
@@ -48,6 +54,7 @@ Result<TextTable> TextTable::read(const std::filesystem::path& file, TableHeader
   std::string line;
   bool wants_header = header == TableHeader::first_line;
   for (int number = 1; std::getline(stream, line); ++number) {
+    if (stream.eof() && cut_line == CutLine::leave_away) break;
     std::vector<std::string> fields = split(line);
     if (fields.empty() || fields.front().front() == '#') continue;
     if (table.columns_ == 0) table.columns_ = fields.size();
@@ -63,7 +70,8 @@ Result<TextTable> TextTable::read(const std::filesystem::path& file, TableHeader
       table.rows_.push_back({number, std::move(fields)});
     }
   }
-  if (wants_header) return Error{ErrorCode::bad_input, file.string(), "empty file", "repeat the run that wrote it"};
+  if (wants_header && cut_line == CutLine::refuse)
+    return Error{ErrorCode::bad_input, file.string(), "empty file", "repeat the run that wrote it"};
   return table;
 }
 

@@ -17,11 +17,20 @@ namespace pelorus {
 
 enum class TableHeader { none, first_line };
 
+// A last line without its end: the file was cut off. Of a run that was killed it is left away.
+enum class CutLine { refuse, leave_away };
+
 class TextTable {
  public:
   // Fields are parted by commas or runs of blanks. Every row must have as many fields as the header or, without one,
   // as the first row: a shorter last row is a file that was cut off.
-  [[nodiscard]] static Result<TextTable> read(const std::filesystem::path& file, TableHeader header);
+  [[nodiscard]] static Result<TextTable> read(const std::filesystem::path& file, TableHeader header,
+                                              CutLine cut_line = CutLine::refuse);
+  // Of a run's own files: as the IncompleteMark beside them says.
+  [[nodiscard]] static Result<TextTable> read_of_run(const std::filesystem::path& file, TableHeader header);
+
+  // Without even a header: a file that was cut off there.
+  [[nodiscard]] bool blank() const { return columns_ == 0; }
 
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::size_t columns() const { return columns_; }

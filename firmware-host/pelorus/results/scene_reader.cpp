@@ -15,8 +15,9 @@ namespace fs = std::filesystem;
 Result<std::optional<TextTable>> read_table(const fs::path& file, std::initializer_list<const char*> columns) {
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) return std::optional<TextTable>();
-  Result<TextTable> table = TextTable::read(file, TableHeader::first_line);
+  Result<TextTable> table = TextTable::read_of_run(file, TableHeader::first_line);
   if (!table) return table.error();
+  if (table.value().blank()) return std::optional<TextTable>();
   for (const char* name : columns) {
     if (table.value().find(name)) continue;
     return Error{ErrorCode::bad_input, file.string() + ":1", "column '" + std::string(name) + "' is missing",

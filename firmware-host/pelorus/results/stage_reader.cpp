@@ -26,9 +26,10 @@ void count_outcome(TextTable& table, std::size_t row, std::size_t column, std::s
 }
 
 Result<Ok> read_outcomes(const fs::path& file, StageRecord& record) {
-  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+  Result<TextTable> read = TextTable::read_of_run(file, TableHeader::first_line);
   if (!read) return read.error();
   TextTable& table = read.value();
+  if (table.blank()) return Ok{};
   for (const char* name : {"timestamp_ns", "points_tracked", "points_static", "points_moving", "points_outlier"}) {
     if (!table.find(name)) return missing_column(file, name);
   }
@@ -51,9 +52,10 @@ Result<Ok> read_outcomes(const fs::path& file, StageRecord& record) {
 
 Result<Ok> read_times(const fs::path& file, StageRecord& record) {
   constexpr double kMsPerUs = 1e-3;
-  Result<TextTable> read = TextTable::read(file, TableHeader::first_line);
+  Result<TextTable> read = TextTable::read_of_run(file, TableHeader::first_line);
   if (!read) return read.error();
   TextTable& table = read.value();
+  if (table.blank()) return Ok{};
   for (const char* name : {"rectify_us", "step_us"}) {
     if (!table.find(name)) return missing_column(file, name);
   }

@@ -195,6 +195,76 @@ TEST(ReadRun, FilesThatLackRowsAreAnError) {
   }
 }
 
+TEST(ReadRun, MissingObjectsThatFramesTellOfAreAnError) {
+  const TemporaryFolder folder;
+  write_run(folder);
+  std::filesystem::remove(folder.path() / "objects.csv");
+  const Result<EstimatedRun> run = read_run(folder.path());
+  ASSERT_FALSE(run.ok());
+  EXPECT_NE(run.error().place.find("objects.csv"), std::string::npos) << run.error().message();
+}
+
+void remove_end(const std::filesystem::path& file, std::size_t bytes) {
+  const std::string text = read_text(file);
+  write_text(file, text.substr(0, text.size() - bytes));
+}
+
+// As a kill and a power cut leave them: each file ends somewhere else, in the middle of a line too.
+TEST(ReadRun, AMarkedRunEndsWithTheLastFrameThatAllFilesHold) {
+  for (const char* file : {"camera.tum", "objects.csv", "frames.csv"}) {
+    for (const std::size_t bytes : {1U, 7U}) {
+      const TemporaryFolder folder;
+      write_run(folder);
+      remove_end(folder.path() / file, bytes);
+      write_text(folder.path() / "INCOMPLETE", "killed\n");
+      const Result<EstimatedRun> run = read_run(folder.path());
+      ASSERT_TRUE(run.ok()) << file << run.error().message();
+      EXPECT_EQ(run.value().size(), 2U) << file;
+      EXPECT_TRUE(run.value()[0].T_world_cam);
+    }
+  }
+  for (const char* emptied : {"objects.csv", "timing.csv", "points.csv"}) {
+    const TemporaryFolder folder;
+    write_run(folder);
+    write_text(folder.path() / emptied, "");
+    write_text(folder.path() / "INCOMPLETE", "killed\n");
+    EXPECT_TRUE(read_run(folder.path()).ok()) << emptied;
+    EXPECT_TRUE(read_step_times(folder.path()).ok()) << emptied;
+  }
+}
+
+TEST(ReadRun, OfAMarkedRunTheCutIsTold) {
+  const TemporaryFolder folder;
+  write_run(folder);
+  write_text(folder.path() / "INCOMPLETE", "killed\n");
+  std::string cut = "?";
+  ASSERT_TRUE(read_run(folder.path(), &cut).ok());
+  EXPECT_EQ(cut, "") << "nothing was";
+  remove_end(folder.path() / "objects.csv", 7);
+  ASSERT_TRUE(read_run(folder.path(), &cut).ok());
+  EXPECT_EQ(cut, "cut to its first 2 of 3 frames, where objects.csv ends");
+}
+
+// No kill takes a row out of the middle, or puts one in.
+TEST(ReadRun, AMarkedRunWithAHoleIsDamaged) {
+  const TemporaryFolder folder;
+  write_run(folder);
+  const std::string text = read_text(folder.path() / "camera.tum");
+  write_text(folder.path() / "camera.tum", text.substr(text.find('\n') + 1));
+  write_text(folder.path() / "INCOMPLETE", "killed\n");
+  EXPECT_FALSE(read_run(folder.path()).ok());
+}
+
+TEST(ReadRun, AMarkedRunWithoutAWholeFrameHoldsNone) {
+  const TemporaryFolder folder;
+  write_run(folder);
+  write_text(folder.path() / "camera.tum", "");
+  write_text(folder.path() / "INCOMPLETE", "killed\n");
+  const Result<EstimatedRun> run = read_run(folder.path());
+  ASSERT_FALSE(run.ok());
+  EXPECT_NE(run.error().message().find("holds no frame"), std::string::npos) << run.error().message();
+}
+
 TEST(ReadRun, AnEmptyTrajectoryBesideFramesIsAnError) {
   const TemporaryFolder folder;
   write_run(folder);
