@@ -21,7 +21,8 @@ Result<> write_picture(const std::filesystem::path& path, const cv::Mat& picture
   std::vector<std::uint8_t> png;
   try {
     // Low compression: writing pictures must not dwarf the step.
-    cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, 1});
+    if (!cv::imencode(".png", picture, png, {cv::IMWRITE_PNG_COMPRESSION, 1}))
+      return Error{ErrorCode::io, path.string(), "the picture cannot be made", ""};
   } catch (const cv::Exception& e) {
     return Error{ErrorCode::io, path.string(), "the picture cannot be made: " + e.msg, ""};
   }

@@ -44,7 +44,8 @@ struct TextFile {
   std::string text;
 };
 
-// All of the files or none: none gets its name before all are written.
+// None of the files gets its name before all are written. They get their names one after the other: should that fail
+// for one of them (rights or folder changed meanwhile), those before it are in their places already.
 [[nodiscard]] Result<> write_together(const std::vector<TextFile>& files, bool overwrite);
 
 }  // namespace pelorus
