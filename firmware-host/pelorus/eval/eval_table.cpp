@@ -1,10 +1,9 @@
 #include "firmware-host/pelorus/eval/eval_table.h"
 
-#include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <numbers>
+
+#include "firmware-host/pelorus/formatted.h"
 
 namespace pelorus {
 namespace {
@@ -12,44 +11,34 @@ namespace {
 constexpr double kDegPerRad = 180.0 / std::numbers::pi;
 constexpr double kCmPerM = 100.0;
 
-std::string format(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-std::string format(const char* pattern, ...) {
-  std::array<char, 256> text{};
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text.data(), text.size(), pattern, arguments);
-  va_end(arguments);
-  return text.data();
-}
-
 struct Goal {
   std::string text;  // empty = none
   bool met = false;
 };
 // `scale` brings both to the `unit` shown.
 Goal below(double value, const std::optional<double>& limit, double scale, const char* unit) {
-  return limit ? Goal{format("< %g %s", *limit * scale, unit), value < *limit} : Goal{};
+  return limit ? Goal{formatted("< %g %s", *limit * scale, unit), value < *limit} : Goal{};
 }
 Goal at_most(std::size_t count, const std::optional<double>& limit) {
-  return limit ? Goal{format("%g", *limit), static_cast<double>(count) <= *limit} : Goal{};
+  return limit ? Goal{formatted("%g", *limit), static_cast<double>(count) <= *limit} : Goal{};
 }
 Goal above_percent(const std::optional<double>& share, const std::optional<double>& limit_percent) {
-  return share && limit_percent ? Goal{format("> %g %%", *limit_percent), 100 * *share > *limit_percent} : Goal{};
+  return share && limit_percent ? Goal{formatted("> %g %%", *limit_percent), 100 * *share > *limit_percent} : Goal{};
 }
 
-std::string share_text(const std::optional<double>& share) { return share ? format("%.1f %%", 100 * *share) : "-"; }
+std::string share_text(const std::optional<double>& share) { return share ? formatted("%.1f %%", 100 * *share) : "-"; }
 
 std::string line(const std::string& name, const std::string& value, const Goal& goal = {},
                  const std::string& paper = "") {
   const char* verdict = goal.text.empty() ? "" : goal.met ? "ok" : "MISSED";
   std::string text =
-      format("  %-34s %20s   %-10s %-8s %s", name.c_str(), value.c_str(), goal.text.c_str(), verdict, paper.c_str());
+      formatted("  %-34s %20s   %-10s %-8s %s", name.c_str(), value.c_str(), goal.text.c_str(), verdict, paper.c_str());
   text.erase(text.find_last_not_of(' ') + 1);
   return text + "\n";
 }
 
 std::string heading(const std::string& name) {
-  return "\n" + format("%-36s %20s   %-10s %-8s %s\n", name.c_str(), "value", "goal", "", "paper");
+  return "\n" + formatted("%-36s %20s   %-10s %-8s %s\n", name.c_str(), "value", "goal", "", "paper");
 }
 
 std::string facts_text(const RunEvaluation& run) {
@@ -57,14 +46,14 @@ std::string facts_text(const RunEvaluation& run) {
   std::string text = "Run    " + run.folder + "\n";
   if (run.incomplete) text += "       INCOMPLETE: " + *run.incomplete + "\n";
   const std::string lost = run.lost ? to_text(*run.lost) : std::to_string(facts.frames_missed) + " in gaps";
-  text += format("       %zu stepped, %s, %zu with a pose\n       resets %d;", facts.frames, lost.c_str(),
-                 facts.frames_with_pose, facts.resets);
+  text += formatted("       %zu stepped, %s, %zu with a pose\n       resets %d;", facts.frames, lost.c_str(),
+                    facts.frames_with_pose, facts.resets);
   for (std::size_t i = 0; i < facts.states.size(); ++i) {
-    if (facts.states[i] > 0) text += format(" %s %zu", to_text(static_cast<VisionState>(i)), facts.states[i]);
+    if (facts.states[i] > 0) text += formatted(" %s %zu", to_text(static_cast<VisionState>(i)), facts.states[i]);
   }
-  text += format("\n       %zu objects confirmed", facts.confirmed.size());
+  text += formatted("\n       %zu objects confirmed", facts.confirmed.size());
   if (run.step_times) {
-    text += format("; step median %.1f ms, p99 %.1f ms", run.step_times->median_ms, run.step_times->p99_ms);
+    text += formatted("; step median %.1f ms, p99 %.1f ms", run.step_times->median_ms, run.step_times->p99_ms);
   }
   return text + "\nTruth  " + (run.has_truth ? run.truth_origin : "none") + "\n" +
          (run.doubt ? "       DOUBTFUL: " + *run.doubt + "\n" : "");
@@ -72,14 +61,14 @@ std::string facts_text(const RunEvaluation& run) {
 
 // Lengths where they read best: centimetres for dives, metres for roads.
 std::string length(double value_m, bool fine) {
-  return fine ? format("%.4f cm", value_m * kCmPerM) : format("%.4f m", value_m);
+  return fine ? formatted("%.4f cm", value_m * kCmPerM) : formatted("%.4f m", value_m);
 }
-std::string angle(double value_rad) { return format("%.4f deg", value_rad * kDegPerRad); }
+std::string angle(double value_rad) { return formatted("%.4f deg", value_rad * kDegPerRad); }
 
 std::string consistency_line(const std::string& name, const Consistency& nees) {
   if (nees.count == 0) return line(name, "no covariance");
-  return line(name, format("%.2f (median %.2f)", nees.mean_nees, nees.median_nees),
-              {format("%.1f-%.1f", nees.band_low, nees.band_high), nees.is_inside_band()});
+  return line(name, formatted("%.2f (median %.2f)", nees.mean_nees, nees.median_nees),
+              {formatted("%.1f-%.1f", nees.band_low, nees.band_high), nees.is_inside_band()});
 }
 
 constexpr double kStandstill_m = 0.5;
@@ -98,7 +87,7 @@ std::string camera_text(const RunEvaluation& run) {
   };
   // Absolute errors grow with the path: a goal for a shorter one says nothing.
   const bool within_path = camera.path_length_m <= goals.camera_absolute_path_m.value_or(camera.path_length_m);
-  std::string text = heading(format("Camera, %.2f m, %zu poses", camera.path_length_m, camera.poses));
+  std::string text = heading(formatted("Camera, %.2f m, %zu poses", camera.path_length_m, camera.poses));
   text += line("step error, mean", length(camera.step_m.mean, fine),
                length_goal(camera.step_m.mean, goals.camera_step_m), dive ? "0.01 cm" : "");
   text += line("step error, RMSE (RPE)", length(camera.step_m.rmse, fine),
@@ -117,13 +106,13 @@ std::string camera_text(const RunEvaluation& run) {
   text += line("ATE, RMSE after alignment", length(camera.ate_rmse_m, fine));
   text += line("final drift", length(camera.final_drift_m, fine));
   if (camera.final_drift_percent) {
-    text += line("final drift over the path", format("%.3f %%", *camera.final_drift_percent),
+    text += line("final drift over the path", formatted("%.3f %%", *camera.final_drift_percent),
                  below(*camera.final_drift_percent, goals.camera_drift_percent, 1, "%"));
   }
   if (camera.kitti) {
-    text += line("KITTI drift, 100-800 m", format("%.3f %%", camera.kitti->translation_percent),
+    text += line("KITTI drift, 100-800 m", formatted("%.3f %%", camera.kitti->translation_percent),
                  below(camera.kitti->translation_percent, goals.camera_drift_percent, 1, "%"));
-    text += line("KITTI rotation, 100-800 m", format("%.4f deg/100m", camera.kitti->rotation_deg_per_100m));
+    text += line("KITTI rotation, 100-800 m", formatted("%.4f deg/100m", camera.kitti->rotation_deg_per_100m));
   }
   // A measured truth has noise of its own, larger than ours: consistency with it would mean nothing.
   if (dive && run.evaluation.camera_consistency) {
@@ -140,36 +129,37 @@ std::string body_ids(const BodyScore& score) {
 
 // A length in cm and an angle in degrees, "-" where there are none.
 std::string pair_cells(const ErrorStatistics& metres, const ErrorStatistics& radians, double ErrorStatistics::*which) {
-  if (metres.count == 0) return format("%8s%7s", "-", "-");
-  return format("%8.3f%7.3f", metres.*which * kCmPerM, radians.*which * kDegPerRad);
+  if (metres.count == 0) return formatted("%8s%7s", "-", "-");
+  return formatted("%8.3f%7.3f", metres.*which * kCmPerM, radians.*which * kDegPerRad);
 }
 
 std::string body_line(const BodyEvaluation& body, bool exact) {
   const MotionError& motion = body.motion;
   const BodyScore& score = body.score;
-  const std::string detected = score.time_to_detection_s ? format("%.2f s", *score.time_to_detection_s) : "never";
-  const std::string coverage = score.frames_on_show == 0 ? "-" : format("%.1f %%", 100 * score.coverage());
-  const std::string nees = !exact || body.consistency.count == 0 ? "-" : format("%.2f", body.consistency.mean_nees);
-  return format("  %-12s", body.name.c_str()) + pair_cells(motion.step_m, motion.step_rad, &ErrorStatistics::median) +
+  const std::string detected = score.time_to_detection_s ? formatted("%.2f s", *score.time_to_detection_s) : "never";
+  const std::string coverage = score.frames_on_show == 0 ? "-" : formatted("%.1f %%", 100 * score.coverage());
+  const std::string nees = !exact || body.consistency.count == 0 ? "-" : formatted("%.2f", body.consistency.mean_nees);
+  return formatted("  %-12s", body.name.c_str()) +
+         pair_cells(motion.step_m, motion.step_rad, &ErrorStatistics::median) +
          pair_cells(motion.step_m, motion.step_rad, &ErrorStatistics::mean) +
          pair_cells(motion.since_birth_m, motion.since_birth_rad, &ErrorStatistics::mean) +
          pair_cells(motion.since_birth_m, motion.since_birth_rad, &ErrorStatistics::max) +
-         format(" %9s %8d %9s %7s  %s\n", coverage.c_str(), score.identity_switches, detected.c_str(), nees.c_str(),
-                body_ids(score).c_str());
+         formatted(" %9s %8d %9s %7s  %s\n", coverage.c_str(), score.identity_switches, detected.c_str(), nees.c_str(),
+                   body_ids(score).c_str());
 }
 
 // A row over the bodies' figures; empty without goals for them.
 std::string body_goals(const Goals& goals) {
   const auto limit = [](const std::optional<double>& value, double scale) {
-    return value ? format("< %g", *value * scale) : std::string();
+    return value ? formatted("< %g", *value * scale) : std::string();
   };
   const std::string step_m = limit(goals.body_step_m, kCmPerM), step_deg = limit(goals.body_step_deg, 1);
   const std::string since_m = limit(goals.body_since_birth_m, kCmPerM),
                     since_deg = limit(goals.body_since_birth_deg, 1);
-  const std::string coverage = goals.body_coverage_percent ? format("> %g %%", *goals.body_coverage_percent) : "";
+  const std::string coverage = goals.body_coverage_percent ? formatted("> %g %%", *goals.body_coverage_percent) : "";
   if ((step_m + step_deg + since_m + since_deg + coverage).empty()) return "";
-  return format("  %-12s%8s%7s%15s%8s%7s%15s %9s %8d %9s %7d  one\n", "goal", step_m.c_str(), step_deg.c_str(), "",
-                since_m.c_str(), since_deg.c_str(), "", coverage.c_str(), 0, "", 6);
+  return formatted("  %-12s%8s%7s%15s%8s%7s%15s %9s %8d %9s %7d  one\n", "goal", step_m.c_str(), step_deg.c_str(), "",
+                   since_m.c_str(), since_deg.c_str(), "", coverage.c_str(), 0, "", 6);
 }
 
 std::string bodies_text(const RunEvaluation& run) {
@@ -193,7 +183,7 @@ std::string tracking_text(const RunEvaluation& run) {
     text += line("  1 s after each body's appearing", share_text(tracking.right_count_settled_share));
   }
   text += line("false objects",
-               format("%zu (%.1f per 1000)", tracking.false_objects.size(), tracking.false_per_1000_frames),
+               formatted("%zu (%.1f per 1000)", tracking.false_objects.size(), tracking.false_per_1000_frames),
                at_most(tracking.false_objects.size(), run.goals.false_objects));
   if (run.exact_truth && !run.evaluation.bodies.empty()) {
     text += consistency_line("NEES of object motion", run.evaluation.object_consistency);
@@ -202,7 +192,7 @@ std::string tracking_text(const RunEvaluation& run) {
     const std::string where = !object.resting_body.empty() ? "on " + object.resting_body + ", at rest"
                               : object.duplicate           ? "second object on a body that has one"
                                                            : "on the background";
-    text += format("    object %d, confirmed in %zu frames: %s\n", object.id.value, object.frames, where.c_str());
+    text += formatted("    object %d, confirmed in %zu frames: %s\n", object.id.value, object.frames, where.c_str());
   }
   return text;
 }

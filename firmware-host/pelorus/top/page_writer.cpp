@@ -1,22 +1,11 @@
 #include "firmware-host/pelorus/top/page_writer.h"
 
-#include <array>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+
+#include "firmware-host/pelorus/formatted.h"
 
 namespace pelorus {
 namespace {
-
-// printf into a string; lines are short.
-__attribute__((format(printf, 1, 2))) std::string text(const char* format, ...) {
-  std::array<char, 512> out{};
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(out.data(), out.size(), format, arguments);
-  va_end(arguments);
-  return out.data();
-}
 
 // Takes from `rest` what fits into `room`, up to a gap between two facts, else to a blank; all of it without either.
 std::string take_what_fits(std::string& rest, std::size_t room) {
@@ -35,7 +24,7 @@ std::string take_what_fits(std::string& rest, std::size_t room) {
 std::string number_text(double value, int decimals, const char* unit, double scale) {
   if (!std::isfinite(value)) return std::string("-") + unit;
   const double digit = std::pow(10.0, decimals);
-  return text("%.*f", decimals, std::round(value * scale * digit) / digit + 0.0) + unit;
+  return formatted("%.*f", decimals, std::round(value * scale * digit) / digit + 0.0) + unit;
 }
 
 std::string padded_right(const std::string& word, std::size_t width) {
